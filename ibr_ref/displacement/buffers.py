@@ -1,0 +1,158 @@
+"""Arrays between the stages: one element a fragment, in submission order.
+
+A band of the picture is processed at a time, so that these arrays stay in the cache. Their lengths are multiples of
+LANES: the last wave runs over the end, into elements that nobody reads.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.jit import LANES, device
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+Bools = NDArray[np.bool_]
+
+
+class Settings(NamedTuple):
+    """Parameters of the search as the kernels see them."""
+
+    method: int
+    """Index into `inputs.METHODS`."""
+    volume: bool
+    """interval="volume"."""
+    bounded: bool
+    """Samples outside the polygon are empty: domain="clip" in the paper's interval."""
+    linear_steps: int
+    binary_steps: int
+    steep_threshold: float
+    shadow_steps: int
+    shadow_bias: float
+    polygon_depth: bool
+    """depth="polygon"."""
+    keep: bool
+    """All stage arrays are wanted, not the picture alone."""
+
+
+class Fragments(NamedTuple):
+    """Stage raster: what the rasterizer hands to the fragment stage."""
+
+    pixel: NDArray[np.int64]
+    """row * width + column."""
+    face: Ints
+    u: Floats
+    """C, the fragment's point in patch space."""
+    v: Floats
+    h: Floats
+    depth: Floats
+    """Window depth of the face."""
+
+
+class Rays(NamedTuple):
+    """View rays p(t) = (u, v, h) + t (du, dv, dh), t in [0, 1]. A ray with h = 2 does not go down: it meets nothing."""
+
+    u: Floats
+    v: Floats
+    h: Floats
+    du: Floats
+    dv: Floats
+    dh: Floats
+
+
+class Hits(NamedTuple):
+    """Stage march."""
+
+    linear_index: Ints
+    """Step at which the linear search stopped; -1 none."""
+    hit_index: Ints
+    """Lattice index of the hit; -1 discarded."""
+    u: Floats
+    """NaN: discarded."""
+    v: Floats
+    h: Floats
+    height_before: Floats
+    steep: Bools
+    margin: Floats
+    domain_margin: Floats
+    steep_margin: Floats
+    depth: Floats
+    """Window depth of the hit."""
+
+
+class Shades(NamedTuple):
+    """Stage shade; channels in rows: (3, F)."""
+
+    color: Floats
+    albedo: Floats
+    normal: Floats
+    lit: Bools
+    lit_margin: Floats
+    axis_margin: Floats
+    facing_margin: Floats
+
+
+@device
+def over_polygon(fragments, i):
+    """Whether the fragment's point lies on the polygon itself: such a ray always hits something."""
+    u, v = fragments.u[i], fragments.v[i]
+    return (fragments.h[i] == 0.0) & (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0)
+
+
+@device
+def padded(count):
+    """The smallest multiple of LANES that is not below count."""
+    return (count + LANES - 1) // LANES * LANES
+
+
+@device
+def fragments_for(count):
+    """Fragments for a band, zeros: what a wave reads past the end is harmless."""
+    size = padded(count)
+    return Fragments(
+        np.zeros(size, np.int64), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
+    )
+
+
+@device
+def rays_for(count):
+    """Rays for a band."""
+    size = padded(count)
+    return Rays(np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size))
+
+
+@device
+def hits_for(count):
+    """Hits for a band; the margins start at infinity (no decision was close)."""
+    size = padded(count)
+    return Hits(
+        np.full(size, np.int32(-1)),
+        np.full(size, np.int32(-1)),
+        np.empty(size),
+        np.empty(size),
+        np.empty(size),
+        np.zeros(size),
+        np.zeros(size, np.bool_),
+        np.full(size, np.inf),
+        np.full(size, np.inf),
+        np.full(size, np.inf),
+        np.empty(size),
+    )
+
+
+@device
+def shades_for(count):
+    """Shades for a band."""
+    size = padded(count)
+    return Shades(
+        np.empty((3, size)),
+        np.empty((3, size)),
+        np.empty((3, size)),
+        np.ones(size, np.bool_),
+        np.full(size, np.inf),
+        np.full(size, np.inf),
+        np.empty(size),
+    )

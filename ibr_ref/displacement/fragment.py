@@ -1,0 +1,181 @@
+"""Fragment stage: a draw call of one base polygon, from triangles to pixels.
+
+The picture is drawn in bands of rows: all stages run over one band before the next, so that the arrays between them
+stay in the cache; bands run in parallel, and each pixel belongs to one of them.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.displacement.buffers import fragments_for, hits_for, rays_for, shades_for
+from ibr_ref.displacement.exact import exact_search
+from ibr_ref.displacement.march import binary_search, heights_before, linear_search, mark_steep, place_hits
+from ibr_ref.displacement.margins import binary_margins, linear_border, linear_margins
+from ibr_ref.displacement.maxima import Maxima
+from ibr_ref.displacement.rays import paper_rays, volume_rays
+from ibr_ref.displacement.relief import relief_search, texture_search
+from ibr_ref.displacement.resolve import depth_test, project_hits, write_color, write_shades, write_stages
+from ibr_ref.displacement.self_shadow import self_shadow
+from ibr_ref.displacement.shade import albedos, facades, height_normals, light_hits, mapped_normals
+from ibr_ref.jit import device, kernel, prange
+from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, fill_depth, fill_varying
+
+PROTRUDED, EXACT, RELIEF, TEXTURE = range(4)
+
+BAND_PIXELS = 4096
+"""Pixels of a band, about: its arrays then take half a megabyte."""
+
+
+class Map(NamedTuple):
+    """A flat texture; a map that is not there has no texels."""
+
+    texels: NDArray[np.float64]
+    columns: float
+    rows: float
+
+
+class Maps(NamedTuple):
+    """The textures of a base polygon."""
+
+    height: Map
+    color: Map
+    normal: Map
+    facade: Map
+    maxima: Maxima
+
+
+@device
+def _count(triangles, width, first_row, last_row):
+    """Fragments of all triangles in the rows [first_row, last_row)."""
+    count = 0
+    for t in range(len(triangles.source)):
+        for row in range(max(first_row, triangles.rows[t, 0]), min(last_row, triangles.rows[t, 1])):
+            first, stop = columns_in_row(edges_in_row(triangles.x[t], triangles.y[t], row), width)
+            count += stop - first
+    return count
+
+
+@device
+def rasterize(triangles, faces, width, first_row, last_row, with_depth, fragments):
+    """Stage raster: the fragments of a band, triangle by triangle."""
+    count = 0
+    for t in range(len(triangles.source)):
+        face, w, varyings = faces[triangles.source[t] // 2], triangles.w[t], triangles.varyings[t]
+        for row in range(max(first_row, triangles.rows[t, 0]), min(last_row, triangles.rows[t, 1])):
+            edges = edges_in_row(triangles.x[t], triangles.y[t], row)
+            first, stop = columns_in_row(edges, width)
+            fill_varying(edges, first, stop, varyings[:, 0], w, fragments.u, count)
+            fill_varying(edges, first, stop, varyings[:, 1], w, fragments.v, count)
+            fill_varying(edges, first, stop, varyings[:, 2], w, fragments.h, count)
+            if with_depth:
+                fill_depth(edges, first, stop, triangles.z[t], fragments.depth, count)
+            for column in range(first, stop):
+                fragments.pixel[count] = row * width + column
+                fragments.face[count] = face
+                count += 1
+
+
+@device
+def search(repeat, fragments, count, constants, settings, maps, hits):
+    """Stage march: the hits of all fragments, by the method's search."""
+    texels, columns, rows = maps.height
+    if settings.method == TEXTURE:
+        texture_search(fragments, count, settings, hits)
+        return
+    if settings.method == RELIEF:
+        relief_search(repeat, fragments, count, constants.eye, texels, columns, rows, settings, hits)
+        return
+    rays = rays_for(count)
+    if settings.volume:
+        volume_rays(fragments, count, constants.eye, rays)
+    else:
+        paper_rays(fragments, count, constants.eye, rays)
+    if settings.method == EXACT:
+        exact_search(
+            repeat, fragments, rays, count, texels, columns, rows, maps.maxima.everywhere, settings, hits
+        )
+        return
+    linear, index = hits.linear_index, hits.hit_index
+    linear_search(repeat, rays, count, texels, columns, rows, maps.maxima, settings, linear)
+    binary_search(repeat, rays, count, texels, columns, rows, settings, linear, index)
+    if settings.keep or maps.facade.texels.size > 0:
+        heights_before(repeat, rays, count, texels, columns, rows, settings, linear, hits.height_before)
+    if settings.keep:
+        if settings.bounded:
+            linear_border(rays, count, settings, linear, hits.domain_margin)
+        binary_margins(
+            repeat, rays, count, texels, columns, rows, settings, linear, index, hits.margin, hits.domain_margin
+        )
+        linear_margins(repeat, rays, count, texels, columns, rows, maps.maxima, settings, linear, hits.margin)
+    place_hits(fragments, rays, count, settings, hits)
+
+
+@device
+def shade(repeat, hits, count, constants, settings, maps, shades):
+    """Stage shade: colours of all hits."""
+    texels, columns, rows = maps.height
+    if maps.normal.texels.size > 0:
+        mapped_normals(
+            repeat, hits, count, maps.normal.texels, maps.normal.columns, maps.normal.rows, constants, shades.normal
+        )
+    else:
+        height_normals(repeat, hits, count, texels, columns, rows, constants, shades.normal)
+    albedos(repeat, hits, count, maps.color.texels, maps.color.columns, maps.color.rows, shades.albedo)
+    if maps.facade.texels.size > 0:
+        facade, facade_columns, facade_rows = maps.facade
+        facades(
+            repeat, hits, count, texels, columns, rows, facade, facade_columns, facade_rows, constants, shades
+        )
+    if settings.shadow_steps > 0:
+        floor = -1.0 if settings.method == RELIEF else 0.0
+        self_shadow(repeat, hits, count, texels, columns, rows, constants.light, floor, settings, shades)
+    light_hits(hits, count, constants, shades)
+
+
+@device
+def _draw_band(repeat, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target):
+    count = _count(triangles, width, first_row, last_row)
+    if count == 0:
+        return
+    fragments, hits, shades = fragments_for(count), hits_for(count), shades_for(count)
+    verdicts = np.empty(count, np.int8)
+    rasterize(triangles, faces, width, first_row, last_row, settings.polygon_depth, fragments)
+    search(repeat, fragments, count, constants, settings, maps, hits)
+    project_hits(fragments, count, constants, settings, hits)
+    if settings.method == PROTRUDED or settings.method == EXACT:
+        mark_steep(count, settings, hits)
+    shown = depth_test(fragments, hits, count, settings, target, verdicts)
+    if shown > 0 or settings.keep:
+        shade(repeat, hits, count, constants, settings, maps, shades)
+    write_color(fragments, shades, count, verdicts, target)
+    if settings.keep:
+        write_stages(fragments, hits, count, patch_id, verdicts, target)
+        write_shades(fragments, hits, shades, count, verdicts, target)
+
+
+@kernel
+def draw(
+    repeat, triangles, faces, constants, settings, heights, colors, normals, facade, maxima, patch_id, width, height, target
+):
+    """Draw one polygon into the target, over what has been drawn before it.
+
+    repeat: None (clamp) or True, the wrap mode of its maps; it is a type to the compiler. faces: the face number of
+    each quad. heights, colors, normals, facade: `Map`s (one by one: Numba's parallel loops take no nested tuples). The
+    bands are taken in an order that gives every thread an even sample of the picture.
+    """
+    band_rows = max(1, BAND_PIXELS // width)
+    bands = (height + band_rows - 1) // band_rows
+    stride = max(1, int(bands * 0.618))
+    while np.gcd(stride, bands) != 1:
+        stride += 1
+    for turn in prange(bands):
+        first_row = (turn * stride) % bands * band_rows
+        last_row = min(height, first_row + band_rows)
+        maps = Maps(heights, colors, normals, facade, maxima)
+        _draw_band(
+            repeat, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target
+        )

@@ -1,0 +1,96 @@
+"""What the method is given: a scene of base polygons, and its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ibr_ref.scene import BasePolygon, Camera, Light, checks
+
+METHODS = ("protruded", "exact", "relief", "texture")
+INTERVALS = ("paper", "volume")
+FACES = ("auxiliary", "base", "extended")
+DEPTHS = ("displaced", "polygon")
+
+MOST_LATTICE = 2**24
+"""Largest N 2^M: the lattice of a ray, so that float32 ports can hold every index."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scene:
+    """Base polygons before a camera. Polygons are drawn in order; on a tie in depth the earlier one stays."""
+
+    polygons: Sequence[BasePolygon]
+    """At least one; `raster.patch_id` is the index here."""
+    camera: Camera
+    light: Light
+    background: ArrayLike = (0.0, 0.0, 0.0)
+    """(3,) linear colour where nothing is shown, in [0, 1]."""
+
+    def __post_init__(self) -> None:
+        polygons = tuple(self.polygons)
+        if not polygons:
+            raise checks.reject("polygons", "none", "at least one BasePolygon")
+        for i, polygon in enumerate(polygons):
+            if not isinstance(polygon, BasePolygon):
+                raise checks.reject(f"polygons[{i}]", type(polygon).__name__, "BasePolygon")
+        object.__setattr__(self, "polygons", polygons)
+        for name, kind in (("camera", Camera), ("light", Light)):
+            if not isinstance(getattr(self, name), kind):
+                raise checks.reject(name, type(getattr(self, name)).__name__, kind.__name__)
+        background = checks.vector("background", self.background)
+        if not ((background >= 0.0) & (background <= 1.0)).all():
+            raise checks.reject("background", background.tolist(), "numbers in [0, 1]")
+        object.__setattr__(self, "background", background)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Params:
+    """Parameters of the search, named as in the paper's sections 3 and 4."""
+
+    linear_steps: int = 10
+    """N >= 1, samples of the linear search (section 3.1)."""
+    binary_steps: int = 6
+    """M >= 0, halvings of the binary search; N 2^M at most 2^24."""
+    steep_threshold: float = 0.1
+    """delta (section 4.2): a hit is on a wall if it is higher by more than this than the map was one linear step before."""
+    interval: str = "paper"
+    """`"paper"`: from the top of the volume to the polygon's plane; "volume": the ray's own stretch inside the volume."""
+    faces: str = "auxiliary"
+    """`"auxiliary"`: base and side faces (section 3.2.2); "base": figure 6c; "extended": section 3.2.1."""
+    depth: str = "displaced"
+    """`"displaced"`: window depth of the hit; "polygon": of the face."""
+    shadow_steps: int = 0
+    """S >= 0, samples towards the light; 0: no self-shadow."""
+    shadow_bias: float = 1e-3
+    """In units of h, >= 0."""
+    method: str = "protruded"
+    """The search; "exact" is the first intersection itself, "relief" and "texture" what the paper compares with."""
+
+    def __post_init__(self) -> None:
+        set_field = object.__setattr__
+        set_field(self, "linear_steps", checks.whole("linear_steps", self.linear_steps, low=1, high=MOST_LATTICE))
+        set_field(self, "binary_steps", checks.whole("binary_steps", self.binary_steps, low=0, high=24))
+        if self.linear_steps << self.binary_steps > MOST_LATTICE:
+            raise checks.reject("linear_steps * 2^binary_steps", self.linear_steps << self.binary_steps, "<= 2^24")
+        set_field(self, "steep_threshold", checks.number("steep_threshold", self.steep_threshold))
+        for name, allowed in (("interval", INTERVALS), ("faces", FACES), ("depth", DEPTHS), ("method", METHODS)):
+            checks.choice(name, getattr(self, name), allowed)
+        set_field(self, "shadow_steps", checks.whole("shadow_steps", self.shadow_steps, low=0, high=2**20))
+        set_field(self, "shadow_bias", checks.number("shadow_bias", self.shadow_bias, low=0.0))
+        if self.interval == "volume" and self.faces != "auxiliary":
+            raise checks.reject("faces", self.faces, 'auxiliary (with interval="volume")')
+
+    @property
+    def drawn_faces(self) -> str:
+        """`faces`, but the compared systems march on the base face alone."""
+        return self.faces if self.method in ("protruded", "exact") else "base"
+
+
+def check(scene: Scene, params: Params) -> None:
+    """What can only be checked of scene and parameters together (the eye's height is checked with the vertex stage)."""
+    for i, polygon in enumerate(scene.polygons):
+        if polygon.domain == "repeat" and params.drawn_faces != "base":
+            raise checks.reject("faces", params.faces, f'base (polygons[{i}].domain is "repeat")')

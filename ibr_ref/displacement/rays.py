@@ -1,0 +1,92 @@
+"""The stretch of each view ray that is searched, in patch space (section 3.1; section 3.2.2 for the side faces)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ibr_ref.jit import LANES, device
+
+
+@device
+def _paper_ray(u, v, h, eye_u, eye_v, eye_h, eye_w):
+    """From B on the top of the volume (h = 1) to A on the plane of the polygon (h = 0), for the face's point C."""
+    to_u = eye_u - eye_w * u
+    to_v = eye_v - eye_w * v
+    to_h = eye_h - eye_w * h
+    down = to_h > 0.0
+    below = h / to_h if down else 0.0
+    above = (1.0 - h) / to_h if down else 0.0
+    a_u = u - to_u * below
+    a_v = v - to_v * below
+    b_u = u + to_u * above
+    b_v = v + to_v * above
+    return b_u, b_v, (1.0 if down else 2.0), a_u - b_u, a_v - b_v, (-1.0 if down else 0.0)
+
+
+@device
+def _exit(x, towards, best, axis, best_axis):
+    """Nearer of `best` and where a ray from x leaves [0, 1] on this axis; a tie stays with the earlier axis."""
+    if towards > 0.0:
+        t = (1.0 - x) / towards
+    elif towards < 0.0:
+        t = (0.0 - x) / towards
+    else:
+        return best, best_axis
+    return (t, axis) if t < best else (best, best_axis)
+
+
+@device
+def _volume_ray(u, v, h, eye_u, eye_v, eye_h, eye_w):
+    """From where the view ray enters the unit cube, or the eye if that is inside, to the face's point C."""
+    inside = eye_w == 1.0 and 0.0 <= eye_u <= 1.0 and 0.0 <= eye_v <= 1.0 and 0.0 <= eye_h <= 1.0
+    if inside:
+        return eye_u, eye_v, eye_h, u - eye_u, v - eye_v, h - eye_h
+    to_u = eye_u - eye_w * u
+    to_v = eye_v - eye_w * v
+    to_h = eye_h - eye_w * h
+    t, axis = _exit(u, to_u, np.inf, 0, -1)
+    t, axis = _exit(v, to_v, t, 1, axis)
+    t, axis = _exit(h, to_h, t, 2, axis)
+    if axis < 0:  # the eye rounds to C itself
+        return u, v, h, 0.0, 0.0, 0.0
+    b_u = u + to_u * t
+    b_v = v + to_v * t
+    b_h = h + to_h * t
+    if axis == 0:
+        b_u = 1.0 if to_u > 0.0 else 0.0
+    elif axis == 1:
+        b_v = 1.0 if to_v > 0.0 else 0.0
+    else:
+        b_h = 1.0 if to_h > 0.0 else 0.0
+    return b_u, b_v, b_h, u - b_u, v - b_v, h - b_h
+
+
+@device
+def paper_rays(fragments, count, eye, rays):
+    """Rays of interval="paper"."""
+    eye_u, eye_v, eye_h, eye_w = eye[0], eye[1], eye[2], eye[3]
+    u, v, h, du, dv, dh = np.empty((6, LANES))  # local: LLVM only vectorizes stores that it can prove apart from the loads
+    for first in range(0, count, LANES):
+        for lane in range(LANES):
+            i = first + lane
+            u[lane], v[lane], h[lane], du[lane], dv[lane], dh[lane] = _paper_ray(
+                fragments.u[i], fragments.v[i], fragments.h[i], eye_u, eye_v, eye_h, eye_w
+            )
+        last = first + LANES
+        rays.u[first:last] = u
+        rays.v[first:last] = v
+        rays.h[first:last] = h
+        rays.du[first:last] = du
+        rays.dv[first:last] = dv
+        rays.dh[first:last] = dh
+
+
+@device
+def volume_rays(fragments, count, eye, rays):
+    """Rays of interval="volume"."""
+    for i in range(count):
+        rays.u[i], rays.v[i], rays.h[i], rays.du[i], rays.dv[i], rays.dh[i] = _volume_ray(
+            fragments.u[i], fragments.v[i], fragments.h[i], eye[0], eye[1], eye[2], eye[3]
+        )
+    for array in (rays.u, rays.v, rays.h, rays.du, rays.dv, rays.dh):  # the last wave's rest: copies that change no bound
+        array[count : (count + LANES - 1) // LANES * LANES] = array[count - 1]

@@ -1,0 +1,109 @@
+"""The passes of protruded displacement mapping, in order."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ibr_ref.displacement import inputs
+from ibr_ref.displacement.buffers import Settings
+from ibr_ref.displacement.fragment import Map, Maps, draw
+from ibr_ref.displacement.inputs import Params, Scene
+from ibr_ref.displacement.maxima import build
+from ibr_ref.displacement.patch_space import uniforms
+from ibr_ref.displacement.resolve import Target, clear, resolve_margins, target_for
+from ibr_ref.displacement.vertex import Faces, vertex_stage
+from ibr_ref.io import Frame
+from ibr_ref.pipeline.clip import clip_triangles
+from ibr_ref.pipeline.triangles import set_up
+from ibr_ref.scene import BasePolygon
+
+
+def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -> Frame:
+    """Render base polygons with their height maps.
+
+    With `stages` the frame holds every intermediate array (`displacement.__doc__` lists them); without, the same
+    picture and depth sooner. Raises ValueError for inputs that only together are not allowed.
+    """
+    params = Params() if params is None else params
+    inputs.check(scene, params)
+    camera = scene.camera
+    draws = [
+        (polygon, constants, vertex_stage(constants, params.drawn_faces, params.interval))
+        for polygon in scene.polygons
+        for constants in [uniforms(polygon, camera, scene.light)]
+    ]
+    target = target_for(camera.width * camera.height, stages)
+    clear(target, np.array(scene.background, np.float64))
+    for patch_id, (polygon, constants, faces) in enumerate(draws):
+        clipped = clip_triangles(faces.clip, faces.patch, faces.triangles, camera.width, camera.height)
+        triangles = set_up(clipped, camera.width, camera.height)
+        repeat = True if polygon.domain == "repeat" else None
+        settings = _settings(params, polygon, stages)
+        draw(
+            repeat, triangles, faces.numbers, constants, settings, *_maps(polygon), patch_id,
+            camera.width, camera.height, target,
+        )  # fmt: skip
+    size = (camera.height, camera.width)
+    return Frame(
+        color=target.color.reshape(*size, 3),
+        depth=target.depth.reshape(size),
+        stages=_stages([faces for _, _, faces in draws], target, size) if stages else {},
+    )
+
+
+def _settings(params: Params, polygon: BasePolygon, keep: bool) -> Settings:
+    volume = params.interval == "volume" and params.drawn_faces == "auxiliary"
+    return Settings(
+        method=inputs.METHODS.index(params.method),
+        volume=volume,
+        bounded=polygon.domain == "clip" and not volume,
+        linear_steps=params.linear_steps,
+        binary_steps=params.binary_steps,
+        steep_threshold=params.steep_threshold,
+        shadow_steps=params.shadow_steps,
+        shadow_bias=params.shadow_bias,
+        polygon_depth=params.depth == "polygon",
+        keep=keep,
+    )
+
+
+def _map(texels: ArrayLike | None) -> Map:
+    if texels is None:
+        array = np.empty(0)
+        array.setflags(write=False)  # as the others: a writable array would be another compilation
+        return Map(array, 0.0, 0.0)
+    image = np.asarray(texels, np.float64)
+    return Map(image.reshape(-1), float(image.shape[1]), float(image.shape[0]))
+
+
+def _maps(polygon: BasePolygon) -> Maps:
+    height = _map(polygon.height_map)
+    return Maps(
+        height=height,
+        color=_map(polygon.color_map),
+        normal=_map(polygon.normal_map),
+        facade=_map(polygon.facade_map),
+        maxima=build(height.texels, int(height.rows), int(height.columns)),
+    )
+
+
+def _stages(faces: list[Faces], target: Target, size: tuple[int, int]) -> dict[str, NDArray[np.generic]]:
+    """The stage arrays by their names in the contract."""
+    margin = np.empty(len(target.depth))
+    resolve_margins(target, margin)
+    stages: dict[str, NDArray[np.generic]] = {
+        "vertex.clip": np.concatenate([f.clip for f in faces]),
+        "vertex.patch": np.concatenate([f.patch for f in faces]),
+    }
+    groups = {
+        "raster": ("face", "patch_id", "patch"),
+        "march": ("linear_index", "hit_index", "hit", "height_before", "steep", "margin", "domain_margin", "steep_margin"),
+        "shade": ("albedo", "normal", "lit", "lit_margin", "axis_margin", "facing_margin"),
+    }
+    for group, names in groups.items():
+        for name in names:
+            array = getattr(target, name)
+            stages[f"{group}.{name}"] = array.reshape(*size, *array.shape[1:])
+    stages["resolve.margin"] = margin.reshape(size)
+    return stages

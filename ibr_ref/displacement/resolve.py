@@ -1,0 +1,266 @@
+"""Resolve stage: window depth of the hits, depth test, and what a pixel shows."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.jit import LANES, device, kernel, prange
+from ibr_ref.pipeline.merge import passes
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+Bools = NDArray[np.bool_]
+
+
+class Target(NamedTuple):
+    """The frame's arrays, one row a pixel: (P,) or (P, 3). Without stages all but the first two are empty."""
+
+    color: Floats
+    depth: Floats
+    face: Ints
+    patch_id: Ints
+    patch: Floats
+    linear_index: Ints
+    hit_index: Ints
+    hit: Floats
+    height_before: Floats
+    steep: Bools
+    margin: Floats
+    domain_margin: Floats
+    steep_margin: Floats
+    albedo: Floats
+    normal: Floats
+    lit: Bools
+    lit_margin: Floats
+    axis_margin: Floats
+    facing_margin: Floats
+    second: Floats
+    """Window depth of the nearest kept fragment behind the one that is shown."""
+
+
+def target_for(pixels: int, keep: bool) -> Target:
+    """Arrays for a picture of so many pixels, not yet cleared."""
+    kept = pixels if keep else 0
+
+    def floats(*channels: int) -> Floats:
+        return np.empty((kept, *channels))
+
+    def ints() -> Ints:
+        return np.empty(kept, np.int32)
+
+    return Target(
+        color=np.empty((pixels, 3)),
+        depth=np.empty(pixels),
+        face=ints(),
+        patch_id=ints(),
+        patch=floats(3),
+        linear_index=ints(),
+        hit_index=ints(),
+        hit=floats(3),
+        height_before=floats(),
+        steep=np.empty(kept, np.bool_),
+        margin=floats(),
+        domain_margin=floats(),
+        steep_margin=floats(),
+        albedo=floats(3),
+        normal=floats(3),
+        lit=np.empty(kept, np.bool_),
+        lit_margin=floats(),
+        axis_margin=floats(),
+        facing_margin=floats(),
+        second=floats(),
+    )
+
+
+@device
+def _clear_part(target, background, first, last):
+    for i in range(first, last):
+        target.color[i, 0], target.color[i, 1], target.color[i, 2] = background[0], background[1], background[2]
+    target.depth[first:last] = 1.0
+    if len(target.face) == 0:
+        return
+    for ints in (target.face, target.patch_id, target.linear_index, target.hit_index):
+        ints[first:last] = -1
+    for bools in (target.steep, target.lit):
+        bools[first:last] = False
+    for triples in (target.patch, target.hit, target.albedo, target.normal):
+        triples[first:last] = np.nan
+    for floats in (
+        target.height_before,
+        target.margin,
+        target.domain_margin,
+        target.steep_margin,
+        target.lit_margin,
+        target.axis_margin,
+        target.facing_margin,
+    ):
+        floats[first:last] = np.nan
+    target.second[first:last] = np.inf
+
+
+@kernel
+def clear(target, background):
+    """Nothing anywhere: the background at depth 1; -1, NaN and False in the stages."""
+    pixels = len(target.depth)
+    chunk = 4096
+    for part in prange((pixels + chunk - 1) // chunk):
+        _clear_part(target, background, part * chunk, min(pixels, (part + 1) * chunk))
+
+
+@device
+def project_hits(fragments, count, constants, settings, hits):
+    """Window depth of each hit; a hit in front of the near plane is discarded, as if nothing had been found."""
+    c, a, view, clip = constants.corner, constants.axes, constants.view_from_world, constants.clip_from_view
+    world = (
+        (c[0], a[0, 0], a[1, 0], a[2, 0]),
+        (c[1], a[0, 1], a[1, 1], a[2, 1]),
+        (c[2], a[0, 2], a[1, 2], a[2, 2]),
+    )
+    rows = (
+        (view[0, 0], view[0, 1], view[0, 2], view[0, 3]),
+        (view[1, 0], view[1, 1], view[1, 2], view[1, 3]),
+        (view[2, 0], view[2, 1], view[2, 2], view[2, 3]),
+        (view[3, 0], view[3, 1], view[3, 2], view[3, 3]),
+    )
+    row_z = (clip[2, 0], clip[2, 1], clip[2, 2], clip[2, 3])
+    row_w = (clip[3, 0], clip[3, 1], clip[3, 2], clip[3, 3])
+    u, v, h, depth = np.empty((4, LANES))
+    index = np.empty(LANES, np.int32)
+    for first in range(0, count, LANES):
+        for lane in range(LANES):
+            i = first + lane
+            p_u, p_v, p_h, k = hits.u[i], hits.v[i], hits.h[i], hits.hit_index[i]
+            x = world[0][0] + p_u * world[0][1] + p_v * world[0][2] + p_h * world[0][3]
+            y = world[1][0] + p_u * world[1][1] + p_v * world[1][2] + p_h * world[1][3]
+            z = world[2][0] + p_u * world[2][1] + p_v * world[2][2] + p_h * world[2][3]
+            view_x = rows[0][0] * x + rows[0][1] * y + rows[0][2] * z + rows[0][3]
+            view_y = rows[1][0] * x + rows[1][1] * y + rows[1][2] * z + rows[1][3]
+            view_z = rows[2][0] * x + rows[2][1] * y + rows[2][2] * z + rows[2][3]
+            view_w = rows[3][0] * x + rows[3][1] * y + rows[3][2] * z + rows[3][3]
+            clip_z = row_z[0] * view_x + row_z[1] * view_y + row_z[2] * view_z + row_z[3] * view_w
+            clip_w = row_w[0] * view_x + row_w[1] * view_y + row_w[2] * view_z + row_w[3] * view_w
+            kept = (k >= 0) & (not (clip_z < 0.0))
+            index[lane] = k if kept else np.int32(-1)
+            u[lane] = p_u if kept else np.nan
+            v[lane] = p_v if kept else np.nan
+            h[lane] = p_h if kept else np.nan
+            depth[lane] = clip_z / clip_w
+        last = first + LANES
+        hits.hit_index[first:last] = index
+        hits.u[first:last] = u
+        hits.v[first:last] = v
+        hits.h[first:last] = h
+        hits.depth[first:last] = depth
+    for i in range(count):
+        if hits.hit_index[i] < 0:
+            hits.linear_index[i] = -1
+            hits.height_before[i] = 0.0
+            hits.steep_margin[i] = np.nan
+        if settings.polygon_depth:
+            hits.depth[i] = fragments.depth[i]
+
+
+SHOWN, NOTED, HIDDEN = 2, 1, 0
+"""A fragment that passes the depth test; one that does not, but is the first on its pixel; any other."""
+
+
+@device
+def depth_test(fragments, hits, count, settings, target, verdicts):
+    """Depth test LESS in submission order; how many fragments passed. Writes the depth."""
+    shown = 0
+    for i in range(count):
+        pixel, depth = fragments.pixel[i], hits.depth[i]
+        kept = hits.hit_index[i] >= 0
+        before = target.depth[pixel]
+        if settings.keep and kept:
+            behind = before if depth < before and before < 1.0 else depth
+            if not (depth < before and before >= 1.0):
+                target.second[pixel] = min(target.second[pixel], behind)
+        verdicts[i] = HIDDEN
+        if kept and passes(depth, before):
+            target.depth[pixel] = depth
+            verdicts[i] = SHOWN
+            shown += 1
+        elif settings.keep and target.face[pixel] < 0:
+            verdicts[i] = NOTED
+        if settings.keep and verdicts[i] != HIDDEN:
+            target.face[pixel] = fragments.face[i]
+    return shown
+
+
+@device
+def _copy(verdicts, pixels, count, source, destination):
+    for i in range(count):
+        if verdicts[i] != HIDDEN:
+            destination[pixels[i]] = source[i]
+
+
+@device
+def _copy_triple(verdicts, pixels, count, x, y, z, destination):
+    for i in range(count):
+        if verdicts[i] != HIDDEN:
+            pixel = pixels[i]
+            destination[pixel, 0], destination[pixel, 1], destination[pixel, 2] = x[i], y[i], z[i]
+
+
+@device
+def write_color(fragments, shades, count, verdicts, target):
+    """Colour of the fragments that passed, in submission order."""
+    color = shades.color
+    for i in range(count):
+        if verdicts[i] == SHOWN:
+            pixel = fragments.pixel[i]
+            target.color[pixel, 0], target.color[pixel, 1] = color[0, i], color[1, i]
+            target.color[pixel, 2] = color[2, i]
+
+
+@device
+def write_stages(fragments, hits, count, patch_id, verdicts, target):
+    """raster.* and march.* of the fragments that their pixels note."""
+    pixels = fragments.pixel
+    for i in range(count):
+        if verdicts[i] != HIDDEN:
+            target.patch_id[pixels[i]] = patch_id
+    _copy_triple(verdicts, pixels, count, fragments.u, fragments.v, fragments.h, target.patch)
+    _copy_triple(verdicts, pixels, count, hits.u, hits.v, hits.h, target.hit)
+    _copy(verdicts, pixels, count, hits.linear_index, target.linear_index)
+    _copy(verdicts, pixels, count, hits.hit_index, target.hit_index)
+    _copy(verdicts, pixels, count, hits.height_before, target.height_before)
+    _copy(verdicts, pixels, count, hits.steep, target.steep)
+    _copy(verdicts, pixels, count, hits.margin, target.margin)
+    _copy(verdicts, pixels, count, hits.domain_margin, target.domain_margin)
+    _copy(verdicts, pixels, count, hits.steep_margin, target.steep_margin)
+
+
+@device
+def write_shades(fragments, hits, shades, count, verdicts, target):
+    """shade.* of the fragments that their pixels note, if they were kept; NaN and False otherwise."""
+    pixels = fragments.pixel
+    for i in range(count):
+        if verdicts[i] == HIDDEN:
+            continue
+        pixel = pixels[i]
+        kept = hits.hit_index[i] >= 0
+        for channel in range(3):
+            target.albedo[pixel, channel] = shades.albedo[channel, i] if kept else np.nan
+            target.normal[pixel, channel] = shades.normal[channel, i] if kept else np.nan
+        target.lit[pixel] = shades.lit[i] and kept
+        target.lit_margin[pixel] = shades.lit_margin[i] if kept else np.nan
+        target.axis_margin[pixel] = shades.axis_margin[i] if kept else np.nan
+        target.facing_margin[pixel] = shades.facing_margin[i] if kept else np.nan
+
+
+@kernel
+def resolve_margins(target, margin):
+    """Distance in depth from what is shown to the nearest other kept fragment; NaN where no face covers the pixel."""
+    chunk = 4096
+    pixels = len(margin)
+    for part in prange((pixels + chunk - 1) // chunk):
+        for i in range(part * chunk, min(pixels, (part + 1) * chunk)):
+            shown = target.depth[i] < 1.0
+            margin[i] = abs(target.second[i] - target.depth[i]) if shown else np.inf
+            if target.face[i] < 0:
+                margin[i] = np.nan

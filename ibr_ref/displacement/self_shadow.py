@@ -1,0 +1,59 @@
+"""Self-shadow: samples from the hit towards the light, against the same height map."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ibr_ref.jit import device
+from ibr_ref.pipeline.sampling import fetch
+
+
+@device
+def _nearer(x, low, high, towards, best):
+    """The smaller of `best` and the fraction of `towards` at which x leaves [low, high]."""
+    if towards > 0.0:
+        return min(best, (high - x) / towards)
+    if towards < 0.0:
+        return min(best, (low - x) / towards)
+    return best
+
+
+@device
+def _stretch(repeat, u, v, h, floor, towards_u, towards_v, towards_h, w):
+    """Fraction of the way towards the light that lies inside the volume (repeat: below its top); 0 without a way."""
+    if towards_u == 0.0 and towards_v == 0.0 and towards_h == 0.0:
+        return 0.0
+    t = 1.0 if w == 1.0 else np.inf
+    if repeat is None:
+        t = _nearer(u, 0.0, 1.0, towards_u, t)
+        t = _nearer(v, 0.0, 1.0, towards_v, t)
+    return _nearer(h, floor, floor + 1.0, towards_h, t)
+
+
+@device
+def self_shadow(repeat, hits, count, texels, columns, rows, light, floor, settings, shades):
+    """`lit` and its margin for each kept hit. floor: the solid lies in [floor, floor + 1], -1 for relief mapping."""
+    steps = settings.shadow_steps
+    for i in range(count):
+        if hits.hit_index[i] < 0:
+            continue
+        if light[2] <= 0.0:  # below the polygon's horizon
+            shades.lit[i] = False
+            continue
+        u, v, h = hits.u[i], hits.v[i], hits.h[i]
+        towards_u = light[0] - light[3] * u
+        towards_v = light[1] - light[3] * v
+        towards_h = light[2] - light[3] * h
+        stretch = _stretch(repeat, u, v, h, floor, towards_u, towards_v, towards_h, light[3])
+        if not stretch > 0.0:
+            continue
+        q_u, q_v, q_h = towards_u * stretch, towards_v * stretch, towards_h * stretch
+        for j in range(1, steps + 1):
+            f = j / (steps + 1)
+            height = fetch(texels, columns, rows, repeat, u + q_u * f, v + q_v * f)
+            level = h + q_h * f - floor + settings.shadow_bias
+            shades.lit_margin[i] = min(shades.lit_margin[i], abs(level - height))
+            if level < height:
+                shades.lit[i] = False
+                if not settings.keep:
+                    break

@@ -1,0 +1,226 @@
+"""Shading of the hits: albedo and normal from the maps, Phong lighting (sections 3.1 and 4.2).
+
+Each function fills one array of the stage for all fragments of a band, in waves.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ibr_ref.jit import LANES, device
+from ibr_ref.pipeline.sampling import fetch, footprint, mix_channel
+
+_LEAST_DIFFERENCE = 2.0**-16  # a smaller difference of heights is rounding, not a slope
+
+
+@device
+def _unit(x, y, z):
+    """The vector divided by its length; zero stays zero."""
+    length = np.sqrt(x * x + y * y + z * z)
+    length = length if length > 0.0 else 1.0
+    return x / length, y / length, z / length
+
+
+@device
+def _slope(ahead, behind, size):
+    """Central difference of heights, per unit of the texture coordinate."""
+    difference = ahead - behind
+    return (0.0 if abs(difference) < _LEAST_DIFFERENCE else difference) * size / 2.0
+
+
+@device
+def gradient(repeat, texels, columns, rows, u, v):
+    """(g_u, g_v) of the height map at (u, v), from one texel to either side."""
+    step_u, step_v = 1.0 / columns, 1.0 / rows
+    g_u = _slope(
+        fetch(texels, columns, rows, repeat, u + step_u, v), fetch(texels, columns, rows, repeat, u - step_u, v), columns
+    )
+    g_v = _slope(
+        fetch(texels, columns, rows, repeat, u, v + step_v), fetch(texels, columns, rows, repeat, u, v - step_v), rows
+    )
+    return g_u, g_v
+
+
+@device
+def height_normals(repeat, hits, count, texels, columns, rows, constants, normal):
+    """normalize(n - s (g_u U* + g_v V*)): the surface's own normal, where there is no normal map."""
+    scale, across, n = constants.scale, constants.rows, constants.frame[2]
+    ux, uy, uz = across[0, 0], across[0, 1], across[0, 2]
+    vx, vy, vz = across[1, 0], across[1, 1], across[1, 2]
+    n0, n1, n2 = n[0], n[1], n[2]
+    g_u, g_v, x, y, z = np.empty((5, LANES))
+    for first in range(0, count, LANES):
+        for lane in range(LANES):
+            g_u[lane], g_v[lane] = gradient(repeat, texels, columns, rows, hits.u[first + lane], hits.v[first + lane])
+        for lane in range(LANES):
+            x[lane], y[lane], z[lane] = _unit(
+                n0 - scale * (g_u[lane] * ux + g_v[lane] * vx),
+                n1 - scale * (g_u[lane] * uy + g_v[lane] * vy),
+                n2 - scale * (g_u[lane] * uz + g_v[lane] * vz),
+            )
+        last = first + LANES
+        normal[0, first:last] = x
+        normal[1, first:last] = y
+        normal[2, first:last] = z
+
+
+@device
+def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal):
+    """Normals from the normal map: 2 c - 1 in the frame (U/|U|, n x U/|U|, n), normalized; a zero one is n."""
+    frame = constants.frame
+    tx, ty, tz = frame[0, 0], frame[0, 1], frame[0, 2]
+    bx, by, bz = frame[1, 0], frame[1, 1], frame[1, 2]
+    nx, ny, nz = frame[2, 0], frame[2, 1], frame[2, 2]
+    x, y, z = np.empty((3, LANES))
+    r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
+    for first in range(0, count, LANES):
+        for lane in range(LANES):
+            i00, i10, i01, i11, fx, fy = footprint(hits.u[first + lane], hits.v[first + lane], columns, rows, repeat)
+            m0 = 2.0 * mix_channel(texels, r, i00, i10, i01, i11, fx, fy) - 1.0
+            m1 = 2.0 * mix_channel(texels, g, i00, i10, i01, i11, fx, fy) - 1.0
+            m2 = 2.0 * mix_channel(texels, b, i00, i10, i01, i11, fx, fy) - 1.0
+            m2 = 1.0 if (m0 == 0.0) & (m1 == 0.0) & (m2 == 0.0) else m2
+            x[lane], y[lane], z[lane] = _unit(
+                m0 * tx + m1 * bx + m2 * nx, m0 * ty + m1 * by + m2 * ny, m0 * tz + m1 * bz + m2 * nz
+            )
+        last = first + LANES
+        normal[0, first:last] = x
+        normal[1, first:last] = y
+        normal[2, first:last] = z
+
+
+@device
+def albedos(repeat, hits, count, texels, columns, rows, albedo):
+    """The colour map at the hits."""
+    red, green, blue = np.empty((3, LANES))
+    r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
+    for first in range(0, count, LANES):
+        for lane in range(LANES):
+            i00, i10, i01, i11, fx, fy = footprint(hits.u[first + lane], hits.v[first + lane], columns, rows, repeat)
+            red[lane] = mix_channel(texels, r, i00, i10, i01, i11, fx, fy)
+            green[lane] = mix_channel(texels, g, i00, i10, i01, i11, fx, fy)
+            blue[lane] = mix_channel(texels, b, i00, i10, i01, i11, fx, fy)
+        last = first + LANES
+        albedo[0, first:last] = red
+        albedo[1, first:last] = green
+        albedo[2, first:last] = blue
+
+
+@device
+def _horizontal(constants, along_u, along_v):
+    """along_u U + along_v V, normalized; n where that is zero (the eye straight above)."""
+    axes, n = constants.axes, constants.frame[2]
+    x, y, z = _unit(
+        along_u * axes[0, 0] + along_v * axes[1, 0],
+        along_u * axes[0, 1] + along_v * axes[1, 1],
+        along_u * axes[0, 2] + along_v * axes[1, 2],
+    )
+    return (n[0], n[1], n[2]) if x == 0.0 and y == 0.0 and z == 0.0 else (x, y, z)
+
+
+@device
+def _wall(repeat, texels, columns, rows, constants, u, v):
+    """Normal of the wall at a steep hit, whether it faces u (else v), and the margin of that decision."""
+    g_u, g_v = gradient(repeat, texels, columns, rows, u, v)
+    length_u, length_v = constants.lengths[0], constants.lengths[1]
+    if g_u == 0.0 and g_v == 0.0:  # no slope to go by: the wall faces the eye
+        d_u = constants.eye[0] - constants.eye[3] * u
+        d_v = constants.eye[1] - constants.eye[3] * v
+        side_u, side_v = abs(d_u) * length_u, abs(d_v) * length_v
+        return _horizontal(constants, d_u, d_v), side_u >= side_v, abs(side_u - side_v)
+    across = constants.rows
+    normal = _unit(
+        -(g_u * across[0, 0] + g_v * across[1, 0]),
+        -(g_u * across[0, 1] + g_v * across[1, 1]),
+        -(g_u * across[0, 2] + g_v * across[1, 2]),
+    )
+    side_u, side_v = abs(g_u) / length_u, abs(g_v) / length_v
+    return normal, side_u >= side_v, abs(side_u - side_v)
+
+
+@device
+def facades(repeat, hits, count, texels, columns, rows, facade, facade_columns, facade_rows, constants, shades):
+    """On steep hits: the facade tile as albedo and the wall's own normal (section 4.2). Few fragments: one by one."""
+    for i in range(count):
+        if not hits.steep[i]:
+            continue
+        u, v = hits.u[i], hits.v[i]
+        normal, faces_u, margin = _wall(repeat, texels, columns, rows, constants, u, v)
+        along = v * constants.lengths[1] if faces_u else u * constants.lengths[0]
+        i00, i10, i01, i11, fx, fy = footprint(
+            along / constants.tile[0], -hits.h[i] * constants.scale / constants.tile[1], facade_columns, facade_rows, True
+        )
+        shades.axis_margin[i] = margin
+        for channel in range(3):
+            shades.albedo[channel, i] = mix_channel(facade, np.uint32(channel), i00, i10, i01, i11, fx, fy)
+            shades.normal[channel, i] = normal[channel]
+
+
+@device
+def _power(base, exponent):
+    """base^exponent by repeated squaring."""
+    result = 1.0
+    while exponent > 0:
+        if exponent & 1:
+            result *= base
+        base *= base
+        exponent >>= 1
+    return result
+
+
+@device
+def _phong(albedo, ambient, diffuse, specular):
+    """One channel of the colour, clamped to [0, 1]."""
+    colour = albedo * (ambient + diffuse) + specular
+    colour = colour if colour > 0.0 else 0.0
+    return colour if colour < 1.0 else 1.0
+
+
+@device
+def _towards(homogeneous, x, y, z):
+    """Unit vector from a world point towards a homogeneous one."""
+    if homogeneous[3] == 0.0:
+        return homogeneous[0], homogeneous[1], homogeneous[2]
+    return _unit(homogeneous[0] - x, homogeneous[1] - y, homogeneous[2] - z)
+
+
+@device
+def light_hits(hits, count, constants, shades):
+    """Phong: albedo (ambient + diffuse lit max(0, n.l)) + specular lit max(0, r.v)^e where n.l > 0."""
+    light = (constants.light_world[0], constants.light_world[1], constants.light_world[2], constants.light_world[3])
+    eye = (constants.eye_world[0], constants.eye_world[1], constants.eye_world[2], constants.eye_world[3])
+    c, a = constants.corner, constants.axes
+    c0, c1, c2 = c[0], c[1], c[2]
+    u0, u1, u2, v0, v1, v2 = a[0, 0], a[0, 1], a[0, 2], a[1, 0], a[1, 1], a[1, 2]
+    h0, h1, h2 = a[2, 0], a[2, 1], a[2, 2]
+    ambient, diffuse, specular = constants.phong[0], constants.phong[1], constants.phong[2]
+    exponent = constants.exponent
+    red, green, blue, facing = np.empty((4, LANES))
+    for first in range(0, count, LANES):
+        for lane in range(LANES):
+            i = first + lane
+            u, v, h = hits.u[i], hits.v[i], hits.h[i]
+            x = c0 + u * u0 + v * v0 + h * h0
+            y = c1 + u * u1 + v * v1 + h * h1
+            z = c2 + u * u2 + v * v2 + h * h2
+            lx, ly, lz = _towards(light, x, y, z)
+            nx, ny, nz = shades.normal[0, i], shades.normal[1, i], shades.normal[2, i]
+            cosine = nx * lx + ny * ly + nz * lz
+            lit = 1.0 if shades.lit[i] else 0.0
+            shine = 0.0
+            if specular > 0.0:
+                ex, ey, ez = _towards(eye, x, y, z)
+                twice = 2.0 * cosine
+                reflected = (twice * nx - lx) * ex + (twice * ny - ly) * ey + (twice * nz - lz) * ez
+                gleam = _power(reflected if reflected > 0.0 else 0.0, exponent)
+                shine = specular * lit * gleam if cosine > 0.0 else 0.0
+            bright = diffuse * lit * (cosine if cosine > 0.0 else 0.0)
+            red[lane] = _phong(shades.albedo[0, i], ambient, bright, shine)
+            green[lane] = _phong(shades.albedo[1, i], ambient, bright, shine)
+            blue[lane] = _phong(shades.albedo[2, i], ambient, bright, shine)
+            facing[lane] = abs(cosine)
+        last = first + LANES
+        shades.color[0, first:last] = red
+        shades.color[1, first:last] = green
+        shades.color[2, first:last] = blue
+        shades.facing_margin[first:last] = facing

@@ -1,0 +1,105 @@
+"""Vertex stage: the faces of the displaced volume that are drawn (section 3.2), and their corners in clip space."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.displacement.patch_space import Uniforms
+from ibr_ref.jit import kernel, prange
+from ibr_ref.scene import checks
+
+Array = NDArray[np.float64]
+
+BASE, U0, U1, V0, V1, TOP = range(6)
+
+_QUADS = np.array(
+    [
+        [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)],
+        [(0, 0, 0), (0, 1, 0), (0, 1, 1), (0, 0, 1)],
+        [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)],
+        [(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)],
+        [(0, 1, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1)],
+        [(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
+    ],
+    np.float64,
+)
+
+
+class Faces(NamedTuple):
+    """Drawn quads in submission order: numbers (F,), corners in patch space (4 F, 3) and clip space (4 F, 4)."""
+
+    numbers: NDArray[np.int32]
+    patch: Array
+    clip: Array
+
+    @property
+    def triangles(self) -> NDArray[np.int32]:
+        """(2 F, 3) vertex indices: each quad (a, b, c, d) as abc, acd."""
+        quads = 4 * np.arange(len(self.numbers), dtype=np.int32)[:, None, None]
+        return (quads + np.array([[0, 1, 2], [0, 2, 3]], np.int32)).reshape(-1, 3)
+
+
+def away_faces(eye: Array, interval: str) -> list[int]:
+    """Numbers of the faces of the unit cube that are turned away from the eye (4,) in patch space.
+
+    A view ray that goes down through the volume leaves it through one of them. The top only counts with
+    interval="volume": rays that look up.
+    """
+    u, v, h, w = eye
+    turned = [(BASE, h > 0.0), (U0, u > 0.0), (U1, u < w), (V0, v > 0.0), (V1, v < w)]
+    if interval == "volume":
+        turned.append((TOP, h < w))
+    return [number for number, away in turned if away]
+
+
+def extended_base(eye: Array) -> Array:
+    """The base enlarged as in section 3.2.1: (4, 3) corners of the rectangle that covers all the volume's projections.
+
+    Raises ValueError if the eye is not above the top of the volume: its projection onto the base is infinite then.
+    """
+    if not eye[2] > eye[3]:
+        raise checks.reject("faces", "extended", f"an eye above the volume (its height is {eye[2]:g}, the top's {eye[3]:g})")
+    u, v = [0.0, 1.0], [0.0, 1.0]
+    for corner in _QUADS[TOP]:
+        towards = eye[:3] - eye[3] * corner
+        u.append(corner[0] - towards[0] * (1.0 / towards[2]))
+        v.append(corner[1] - towards[1] * (1.0 / towards[2]))
+    low, high = (min(u), min(v)), (max(u), max(v))
+    return np.array([(low[0], low[1], 0), (high[0], low[1], 0), (high[0], high[1], 0), (low[0], high[1], 0)], np.float64)
+
+
+@kernel
+def transform(patch, corner, axes, view_from_world, clip_from_view, clip):
+    """Patch -> world -> view -> clip, one after the other, for each vertex."""
+    for i in prange(len(patch)):
+        u, v, h = patch[i]
+        world = np.empty(3)
+        for j in range(3):
+            world[j] = corner[j] + u * axes[0, j] + v * axes[1, j] + h * axes[2, j]
+        view = np.empty(4)
+        for j in range(4):
+            m = view_from_world[j]
+            view[j] = m[0] * world[0] + m[1] * world[1] + m[2] * world[2] + m[3]
+        for j in range(4):
+            m = clip_from_view[j]
+            clip[i, j] = m[0] * view[0] + m[1] * view[1] + m[2] * view[2] + m[3] * view[3]
+
+
+def vertex_stage(constants: Uniforms, faces: str, interval: str) -> Faces:
+    """The faces of one polygon that are drawn."""
+    if faces == "extended":
+        numbers, quads = [BASE], extended_base(constants.eye)
+    else:
+        numbers = away_faces(constants.eye, interval)
+        if faces == "base":
+            numbers = [number for number in numbers if number == BASE]
+        quads = _QUADS[numbers]
+    patch = np.ascontiguousarray(quads.reshape(-1, 3))
+    clip = np.empty((len(patch), 4))
+    transform(
+        patch, constants.corner, constants.axes, constants.view_from_world, constants.clip_from_view, clip
+    )
+    return Faces(np.array(numbers, np.int32), patch, clip)

@@ -1,0 +1,98 @@
+"""Checks that all descriptions share. Every error names the field, the value found and what is allowed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Vector = tuple[float, float, float]
+
+
+def reject(field: str, found: object, allowed: str) -> ValueError:
+    """The error for a field's value: ``raise reject("height_scale", -1.0, "> 0")``."""
+    return ValueError(f"{field}: found {found!r}, allowed: {allowed}")
+
+
+def number(field: str, value: Any, *, low: float = -math.inf, above: float = -math.inf, high: float = math.inf) -> float:
+    """A finite float with low <= value <= high and value > above."""
+    allowed = "a finite number"
+    allowed += f" > {above:g}" if above > -math.inf else f" >= {low:g}" if low > -math.inf else ""
+    allowed += f", <= {high:g}" if high < math.inf else ""
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise reject(field, value, allowed) from None
+    if not math.isfinite(result) or not low <= result <= high or result <= above:
+        raise reject(field, value, allowed)
+    return result
+
+
+def whole(field: str, value: Any, *, low: int, high: int) -> int:
+    """An integer in [low, high]; 3.0 is one, 3.5 and True are not."""
+    allowed = f"a whole number from {low} to {high}"
+    try:
+        if isinstance(value, bool) or int(value) != value:
+            raise reject(field, value, allowed)
+    except (TypeError, ValueError, OverflowError):
+        raise reject(field, value, allowed) from None
+    if not low <= value <= high:
+        raise reject(field, value, allowed)
+    return int(value)
+
+
+def choice(field: str, value: object, allowed: Sequence[str]) -> None:
+    """One of the given words."""
+    if not isinstance(value, str) or value not in allowed:
+        raise reject(field, value, " | ".join(allowed))
+
+
+def vector(field: str, value: ArrayLike, length: int = 3) -> NDArray[np.float64]:
+    """A read-only float64 array of `length` finite numbers."""
+    allowed = f"{length} finite numbers"
+    try:
+        array = np.array(value, np.float64)
+    except (TypeError, ValueError):
+        raise reject(field, value, allowed) from None
+    if array.shape != (length,) or not np.isfinite(array).all():
+        raise reject(field, value, allowed)
+    return frozen(array)
+
+
+def matrix(field: str, value: ArrayLike, rows: int, columns: int) -> NDArray[np.float64]:
+    """A read-only float64 array of rows x columns finite numbers."""
+    allowed = f"a {rows} x {columns} matrix of finite numbers"
+    try:
+        array = np.array(value, np.float64)
+    except (TypeError, ValueError):
+        raise reject(field, value, allowed) from None
+    if array.shape != (rows, columns) or not np.isfinite(array).all():
+        raise reject(field, value, allowed)
+    return frozen(array)
+
+
+def texture(field: str, value: ArrayLike, channels: int) -> NDArray[np.float64]:
+    """A read-only, C-ordered float64 copy of an image: (H, W), or (H, W, 3); every texel in [0, 1]."""
+    shape = "(H, W)" if channels == 1 else f"(H, W, {channels})"
+    try:
+        array = np.array(value, np.float64, order="C")
+    except (TypeError, ValueError):
+        raise reject(field, type(value).__name__, f"an array {shape} of numbers in [0, 1]") from None
+    if array.ndim != (2 if channels == 1 else 3) or array.size == 0 or (channels > 1 and array.shape[2] != channels):
+        raise reject(f"{field}.shape", array.shape, f"{shape}, not empty")
+    if array.size >= 2**31:
+        raise reject(f"{field}.size", array.size, "fewer than 2^31 numbers")
+    bad = ~((array >= 0.0) & (array <= 1.0))
+    if bad.any():
+        where = tuple(int(i) for i in np.argwhere(bad)[0])
+        raise reject(f"{field}{list(where)}", float(array[where]), "numbers in [0, 1]")
+    return frozen(array)
+
+
+def frozen(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same array, read-only from now on."""
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,54 @@
+"""Triangle meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ibr_ref.scene import checks
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mesh:
+    """Indexed triangles with a colour. Degenerate triangles are kept: they cover nothing.
+
+    Raises ValueError for vertices that are not finite, no triangles, indices out of range, or colours outside [0, 1].
+    """
+
+    vertices: ArrayLike
+    """(V, 3) in world (or model) space."""
+    triangles: ArrayLike
+    """(T, 3) indices into `vertices`."""
+    color: ArrayLike = (0.8, 0.8, 0.8)
+    """(3,) for the whole mesh, or (V, 3); linear, in [0, 1]."""
+
+    def __post_init__(self) -> None:
+        vertices = np.array(self.vertices, np.float64, order="C")
+        if vertices.ndim != 2 or vertices.shape[1] != 3 or not len(vertices):
+            raise checks.reject("vertices.shape", vertices.shape, "(V, 3), V >= 1")
+        if not np.isfinite(vertices).all():
+            row = int(np.argwhere(~np.isfinite(vertices))[0, 0])
+            raise checks.reject(f"vertices[{row}]", vertices[row].tolist(), "finite numbers")
+        object.__setattr__(self, "vertices", checks.frozen(vertices))
+        object.__setattr__(self, "triangles", self._checked_triangles(len(vertices)))
+        color = np.array(self.color, np.float64)
+        if color.shape not in ((3,), vertices.shape):
+            raise checks.reject("color.shape", color.shape, f"(3,) or {vertices.shape}")
+        if not ((color >= 0.0) & (color <= 1.0)).all():
+            raise checks.reject("color", "a component outside", "numbers in [0, 1]")
+        object.__setattr__(self, "color", checks.frozen(color))
+
+    def _checked_triangles(self, count: int) -> NDArray[np.int32]:
+        triangles = np.array(self.triangles)
+        if triangles.ndim != 2 or triangles.shape[1] != 3 or not len(triangles):
+            raise checks.reject("triangles.shape", triangles.shape, "(T, 3), T >= 1")
+        if not np.issubdtype(triangles.dtype, np.integer):
+            raise checks.reject("triangles.dtype", str(triangles.dtype), "whole numbers")
+        if triangles.min() < 0 or triangles.max() >= count:
+            bad = int(triangles.min()) if triangles.min() < 0 else int(triangles.max())
+            raise checks.reject("triangles", bad, f"indices from 0 to {count - 1}")
+        result = np.ascontiguousarray(triangles, np.int32)
+        result.setflags(write=False)
+        return result
