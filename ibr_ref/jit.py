@@ -21,14 +21,17 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import llvmlite
 import numba
 from numba import prange
-from numba.core import config, event
+from numba.core import config as _config
+from numba.core import event
 
-__all__ = ["LANES", "compilations", "device", "functions", "kernel", "prange"]
+__all__ = ["LANES", "compilations", "device", "functions", "kernel", "prange", "routine", "threads"]
+
+config: Any = _config  # its attributes are made at run time
 
 LANES = 32
 """Fragments in a wave: enough to hide the latency of gathers, few enough that the lanes' arrays stay in the L1 cache."""
@@ -77,26 +80,35 @@ def _cache_directory() -> str:
 _CACHE_DIRECTORY = "" if config.DISABLE_JIT else _cache_directory()
 
 
-def kernel(function: Function) -> Function:
-    """Compile an entry point: `prange` loops run on all threads, and the machine code is kept on disk."""
+def _entry(function: Function, parallel: bool) -> Function:
     before = config.CACHE_DIR
     config.CACHE_DIR = _CACHE_DIRECTORY  # read while decorating; restored, because other packages read it too
     try:
-        compiled = numba.njit(parallel=not SERIAL, error_model="numpy", fastmath=False, cache=True)(function)
+        compiled = numba.njit(parallel=parallel, error_model="numpy", fastmath=False, cache=True)(function)
     finally:
         config.CACHE_DIR = before
     functions.append(compiled)
-    return compiled  # type: ignore[no-any-return]
+    return cast(Function, compiled)
+
+
+def kernel(function: Function) -> Function:
+    """Compile an entry point whose `prange` loop runs on all threads; the machine code is kept on disk."""
+    return _entry(function, parallel=not SERIAL)
+
+
+def routine(function: Function) -> Function:
+    """Compile an entry point that runs on one thread: what is too short, or too ordered, to be shared out."""
+    return _entry(function, parallel=False)
 
 
 def device(function: Function) -> Function:
-    """Compile a function that only kernels call."""
+    """Compile a function that only compiled code calls."""
     compiled = numba.njit(error_model="numpy", fastmath=False)(function)
     functions.append(compiled)
-    return compiled  # type: ignore[no-any-return]
+    return cast(Function, compiled)
 
 
-class _Listener(event.Listener):  # type: ignore[misc]
+class _Listener(event.Listener):
     def __init__(self, started: Callable[[str], None]) -> None:
         self.started = started
 
@@ -112,3 +124,8 @@ def compilations(started: Callable[[str], None]) -> Iterator[None]:
     """While inside, call `started(name)` for every function that has to be compiled (not for those found on disk)."""
     with event.install_listener("numba:compile", _Listener(started)):
         yield
+
+
+def threads() -> int:
+    """Threads that a `prange` loop runs on."""
+    return 1 if SERIAL or config.DISABLE_JIT else int(numba.get_num_threads())

@@ -44,10 +44,8 @@ class Fragments(NamedTuple):
     pixel: NDArray[np.int64]
     """row * width + column."""
     face: Ints
-    u: Floats
-    """C, the fragment's point in patch space."""
-    v: Floats
-    h: Floats
+    patch: Floats
+    """(3, F): C, the fragment's point in patch space, u, v and h in rows."""
     depth: Floats
     """Window depth of the face."""
 
@@ -96,10 +94,36 @@ class Shades(NamedTuple):
 
 
 @device
+def lanes():
+    """An array for the lanes of a wave. Allocated where it is used: LLVM then knows that a store cannot change a texture."""
+    return np.empty(LANES)
+
+
+@device
+def index_lanes():
+    """The same for indices."""
+    return np.empty(LANES, np.int32)
+
+
+@device
+def load(array, first, wave):
+    """Copy a wave's elements of an array to its lanes."""
+    for lane in range(LANES):
+        wave[lane] = array[first + lane]
+
+
+@device
+def store(wave, array, first):
+    """Copy the lanes of a wave to their elements of an array."""
+    for lane in range(LANES):
+        array[first + lane] = wave[lane]
+
+
+@device
 def over_polygon(fragments, i):
     """Whether the fragment's point lies on the polygon itself: such a ray always hits something."""
-    u, v = fragments.u[i], fragments.v[i]
-    return (fragments.h[i] == 0.0) & (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0)
+    u, v, h = fragments.patch[0, i], fragments.patch[1, i], fragments.patch[2, i]
+    return (h == 0.0) & (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0)
 
 
 @device
@@ -112,9 +136,7 @@ def padded(count):
 def fragments_for(count):
     """Fragments for a band, zeros: what a wave reads past the end is harmless."""
     size = padded(count)
-    return Fragments(
-        np.zeros(size, np.int64), np.zeros(size, np.int32), np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)
-    )
+    return Fragments(np.zeros(size, np.int64), np.zeros(size, np.int32), np.zeros((3, size)), np.zeros(size))
 
 
 @device

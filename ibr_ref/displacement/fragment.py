@@ -22,7 +22,7 @@ from ibr_ref.displacement.resolve import depth_test, project_hits, write_color, 
 from ibr_ref.displacement.self_shadow import self_shadow
 from ibr_ref.displacement.shade import albedos, facades, height_normals, light_hits, mapped_normals
 from ibr_ref.jit import device, kernel, prange
-from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, fill_depth, fill_varying
+from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, fill_depth, fill_varyings
 
 PROTRUDED, EXACT, RELIEF, TEXTURE = range(4)
 
@@ -68,9 +68,7 @@ def rasterize(triangles, faces, width, first_row, last_row, with_depth, fragment
         for row in range(max(first_row, triangles.rows[t, 0]), min(last_row, triangles.rows[t, 1])):
             edges = edges_in_row(triangles.x[t], triangles.y[t], row)
             first, stop = columns_in_row(edges, width)
-            fill_varying(edges, first, stop, varyings[:, 0], w, fragments.u, count)
-            fill_varying(edges, first, stop, varyings[:, 1], w, fragments.v, count)
-            fill_varying(edges, first, stop, varyings[:, 2], w, fragments.h, count)
+            fill_varyings(edges, first, stop, varyings, w, fragments.patch, count)
             if with_depth:
                 fill_depth(edges, first, stop, triangles.z[t], fragments.depth, count)
             for column in range(first, stop):
@@ -95,9 +93,7 @@ def search(repeat, fragments, count, constants, settings, maps, hits):
     else:
         paper_rays(fragments, count, constants.eye, rays)
     if settings.method == EXACT:
-        exact_search(
-            repeat, fragments, rays, count, texels, columns, rows, maps.maxima.everywhere, settings, hits
-        )
+        exact_search(repeat, fragments, rays, count, texels, columns, rows, maps.maxima.everywhere, settings, hits)
         return
     linear, index = hits.linear_index, hits.hit_index
     linear_search(repeat, rays, count, texels, columns, rows, maps.maxima, settings, linear)
@@ -127,9 +123,7 @@ def shade(repeat, hits, count, constants, settings, maps, shades):
     albedos(repeat, hits, count, maps.color.texels, maps.color.columns, maps.color.rows, shades.albedo)
     if maps.facade.texels.size > 0:
         facade, facade_columns, facade_rows = maps.facade
-        facades(
-            repeat, hits, count, texels, columns, rows, facade, facade_columns, facade_rows, constants, shades
-        )
+        facades(repeat, hits, count, texels, columns, rows, facade, facade_columns, facade_rows, constants, shades)
     if settings.shadow_steps > 0:
         floor = -1.0 if settings.method == RELIEF else 0.0
         self_shadow(repeat, hits, count, texels, columns, rows, constants.light, floor, settings, shades)
@@ -159,7 +153,20 @@ def _draw_band(repeat, triangles, faces, constants, settings, maps, patch_id, wi
 
 @kernel
 def draw(
-    repeat, triangles, faces, constants, settings, heights, colors, normals, facade, maxima, patch_id, width, height, target
+    repeat,
+    triangles,
+    faces,
+    constants,
+    settings,
+    heights,
+    colors,
+    normals,
+    facade,
+    maxima,
+    patch_id,
+    width,
+    height,
+    target,
 ):
     """Draw one polygon into the target, over what has been drawn before it.
 
@@ -176,6 +183,4 @@ def draw(
         first_row = (turn * stride) % bands * band_rows
         last_row = min(height, first_row + band_rows)
         maps = Maps(heights, colors, normals, facade, maxima)
-        _draw_band(
-            repeat, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target
-        )
+        _draw_band(repeat, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import over_polygon
+from ibr_ref.displacement.buffers import index_lanes, lanes, over_polygon, store
 from ibr_ref.displacement.maxima import highest
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch, lerp
@@ -76,8 +76,8 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
     total = np.float64(steps << settings.binary_steps)
     stride = np.float64(1 << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    u, v, h, du, dv, dh, sample, height = np.empty((8, LANES))
-    stop = np.empty(LANES, np.int32)
+    u, v, h, du, dv, dh, sample, height = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    stop = index_lanes()
     for first in range(0, count, LANES):
         for lane in range(LANES):
             i = first + lane
@@ -110,7 +110,7 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
             if stopped == LANES:
                 break
             step += 1
-        linear_index[first : first + LANES] = stop
+        store(stop, linear_index, first)
 
 
 @device
@@ -119,8 +119,8 @@ def binary_search(repeat, rays, count, texels, columns, rows, settings, linear_i
     stride = np.int32(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    u, v, h, du, dv, dh, sample, height = np.empty((8, LANES))
-    outside, inside, middle = np.empty((3, LANES), np.int32)
+    u, v, h, du, dv, dh, sample, height = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    outside, inside, middle = index_lanes(), index_lanes(), index_lanes()
     for first in range(0, count, LANES):
         searching = np.int32(0)
         for lane in range(LANES):
@@ -147,7 +147,7 @@ def binary_search(repeat, rays, count, texels, columns, rows, settings, linear_i
                 open_ = outside[lane] < inside[lane]
                 inside[lane] = middle[lane] if below & open_ else inside[lane]
                 outside[lane] = outside[lane] if below | (not open_) else middle[lane]
-        hit_index[first : first + LANES] = inside
+        store(inside, hit_index, first)
 
 
 @device
@@ -156,8 +156,13 @@ def heights_before(repeat, rays, count, texels, columns, rows, settings, linear_
     stride = np.float64(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    before = np.empty(LANES)
+    before = lanes()
     for first in range(0, count, LANES):
+        searched = np.int32(0)
+        for lane in range(LANES):
+            searched += np.int32(1) if linear_index[first + lane] > 0 else np.int32(0)
+        if searched == 0:  # nothing to read: the heights stay 0
+            continue
         for lane in range(LANES):
             i = first + lane
             stop = linear_index[i]
@@ -167,7 +172,7 @@ def heights_before(repeat, rays, count, texels, columns, rows, settings, linear_
             inside = (p_u >= low) & (p_u <= high) & (p_v >= low) & (p_v <= high) & (stop > 0)
             texel = fetch(texels, columns, rows, repeat, p_u, p_v)
             before[lane] = texel if inside else 0.0
-        height_before[first : first + LANES] = before
+        store(before, height_before, first)
 
 
 @device
@@ -178,8 +183,8 @@ def place_hits(fragments, rays, count, settings, hits):
     """
     end = np.int32(settings.linear_steps << settings.binary_steps)
     total = np.float64(end)
-    u, v, h, before = np.empty((4, LANES))
-    linear, index = np.empty((2, LANES), np.int32)
+    u, v, h, before = lanes(), lanes(), lanes(), lanes()
+    linear, index = index_lanes(), index_lanes()
     for first in range(0, count, LANES):
         for lane in range(LANES):
             i = first + lane
@@ -193,13 +198,12 @@ def place_hits(fragments, rays, count, settings, hits):
             before[lane] = hits.height_before[i] if stopped else 0.0
             linear[lane] = hits.linear_index[i] if stopped else -1
             index[lane] = k if stopped else (end if ground else -1)
-        last = first + LANES
-        hits.u[first:last] = u
-        hits.v[first:last] = v
-        hits.h[first:last] = h
-        hits.height_before[first:last] = before
-        hits.linear_index[first:last] = linear
-        hits.hit_index[first:last] = index
+        store(u, hits.u, first)
+        store(v, hits.v, first)
+        store(h, hits.h, first)
+        store(before, hits.height_before, first)
+        store(linear, hits.linear_index, first)
+        store(index, hits.hit_index, first)
 
 
 @device

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.displacement.buffers import index_lanes, lanes, load, store
 from ibr_ref.displacement.march import clearance, wave_bounds
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch
@@ -21,13 +22,12 @@ def _distance_to_border(u, v):
 
 @device
 def _load(rays, first, u, v, h, du, dv, dh):
-    last = first + LANES
-    u[:] = rays.u[first:last]
-    v[:] = rays.v[first:last]
-    h[:] = rays.h[first:last]
-    du[:] = rays.du[first:last]
-    dv[:] = rays.dv[first:last]
-    dh[:] = rays.dh[first:last]
+    load(rays.u, first, u)
+    load(rays.v, first, v)
+    load(rays.h, first, h)
+    load(rays.du, first, du)
+    load(rays.dv, first, dv)
+    load(rays.dh, first, dh)
 
 
 @device
@@ -37,8 +37,18 @@ def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings,
     total = np.float64(steps << settings.binary_steps)
     stride = np.float64(1 << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    u, v, h, du, dv, dh, sample, height, closest = np.empty((9, LANES))
-    compared = np.empty(LANES, np.int32)
+    u, v, h, du, dv, dh, sample, height, closest = (
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+    )
+    compared = index_lanes()
     for first in range(0, count, LANES):
         _load(rays, first, u, v, h, du, dv, dh)
         last_step, farthest = 0, 0.0
@@ -50,6 +60,8 @@ def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings,
             closest[lane] = margin[first + lane]
             farthest = max(farthest, closest[lane] if compared[lane] >= 0 else 0.0)
         bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, settings.volume)
+        if not settings.volume:
+            last_step = min(last_step, steps - 1)  # the last comparison is at h = 0
         for step in range(last_step, -1, -1):
             t = step * stride / total
             if clearance(repeat, maxima, settings.bounded, bounds_u, bounds_v, bounds_h, t, t) >= farthest:
@@ -68,7 +80,7 @@ def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings,
                 height[lane] = closest[lane] if compared[lane] >= 0 else 0.0
             for lane in range(LANES):
                 farthest = height[lane] if height[lane] > farthest else farthest
-        margin[first : first + LANES] = closest
+        store(closest, margin, first)
 
 
 @device
@@ -77,8 +89,19 @@ def binary_margins(repeat, rays, count, texels, columns, rows, settings, linear_
     stride = np.int32(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    u, v, h, du, dv, dh, sample, edge, closest, nearest = np.empty((10, LANES))
-    outside, inside, middle, index = np.empty((4, LANES), np.int32)
+    u, v, h, du, dv, dh, sample, edge, closest, nearest = (
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+        lanes(),
+    )
+    outside, inside, middle, index = index_lanes(), index_lanes(), index_lanes(), index_lanes()
     for first in range(0, count, LANES):
         _load(rays, first, u, v, h, du, dv, dh)
         searching = np.int32(0)
@@ -109,9 +132,9 @@ def binary_margins(repeat, rays, count, texels, columns, rows, settings, linear_
                 below = middle[lane] >= index[lane]
                 outside[lane] = outside[lane] if below | (not searched) else middle[lane]
                 inside[lane] = middle[lane] if below & searched else inside[lane]
-        margin[first : first + LANES] = closest
+        store(closest, margin, first)
         if settings.bounded:
-            border[first : first + LANES] = nearest
+            store(nearest, border, first)
 
 
 @device
@@ -120,8 +143,8 @@ def linear_border(rays, count, settings, linear_index, border):
     steps = settings.linear_steps
     total = np.float64(steps << settings.binary_steps)
     stride = np.float64(1 << settings.binary_steps)
-    u, v, h, du, dv, dh, nearest = np.empty((7, LANES))
-    tested = np.empty(LANES, np.int32)
+    u, v, h, du, dv, dh, nearest = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    tested = index_lanes()
     for first in range(0, count, LANES):
         _load(rays, first, u, v, h, du, dv, dh)
         last_step = 0
@@ -136,4 +159,4 @@ def linear_border(rays, count, settings, linear_index, border):
             for lane in range(LANES):
                 edge = _distance_to_border(u[lane] + du[lane] * t, v[lane] + dv[lane] * t)
                 nearest[lane] = edge if (step <= tested[lane]) & (edge < nearest[lane]) else nearest[lane]
-        border[first : first + LANES] = nearest
+        store(nearest, border, first)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.displacement.buffers import lanes, padded, store
 from ibr_ref.jit import LANES, device
 
 
@@ -65,20 +66,19 @@ def _volume_ray(u, v, h, eye_u, eye_v, eye_h, eye_w):
 def paper_rays(fragments, count, eye, rays):
     """Rays of interval="paper"."""
     eye_u, eye_v, eye_h, eye_w = eye[0], eye[1], eye[2], eye[3]
-    u, v, h, du, dv, dh = np.empty((6, LANES))  # local: LLVM only vectorizes stores that it can prove apart from the loads
+    u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
         for lane in range(LANES):
             i = first + lane
             u[lane], v[lane], h[lane], du[lane], dv[lane], dh[lane] = _paper_ray(
-                fragments.u[i], fragments.v[i], fragments.h[i], eye_u, eye_v, eye_h, eye_w
+                fragments.patch[0, i], fragments.patch[1, i], fragments.patch[2, i], eye_u, eye_v, eye_h, eye_w
             )
-        last = first + LANES
-        rays.u[first:last] = u
-        rays.v[first:last] = v
-        rays.h[first:last] = h
-        rays.du[first:last] = du
-        rays.dv[first:last] = dv
-        rays.dh[first:last] = dh
+        store(u, rays.u, first)
+        store(v, rays.v, first)
+        store(h, rays.h, first)
+        store(du, rays.du, first)
+        store(dv, rays.dv, first)
+        store(dh, rays.dh, first)
 
 
 @device
@@ -86,7 +86,8 @@ def volume_rays(fragments, count, eye, rays):
     """Rays of interval="volume"."""
     for i in range(count):
         rays.u[i], rays.v[i], rays.h[i], rays.du[i], rays.dv[i], rays.dh[i] = _volume_ray(
-            fragments.u[i], fragments.v[i], fragments.h[i], eye[0], eye[1], eye[2], eye[3]
+            fragments.patch[0, i], fragments.patch[1, i], fragments.patch[2, i], eye[0], eye[1], eye[2], eye[3]
         )
-    for array in (rays.u, rays.v, rays.h, rays.du, rays.dv, rays.dh):  # the last wave's rest: copies that change no bound
-        array[count : (count + LANES - 1) // LANES * LANES] = array[count - 1]
+    for i in range(count, padded(count)):  # the last wave's rest: copies, which change no bound
+        rays.u[i], rays.v[i], rays.h[i] = rays.u[count - 1], rays.v[count - 1], rays.h[count - 1]
+        rays.du[i], rays.dv[i], rays.dh[i] = rays.du[count - 1], rays.dv[count - 1], rays.dh[count - 1]

@@ -41,8 +41,8 @@ def relief_search(repeat, fragments, count, eye, texels, columns, rows, settings
     end = settings.linear_steps * stride
     bounded = settings.bounded
     for i in range(count):
-        u, v = fragments.u[i], fragments.v[i]
-        to_h = eye[2] - eye[3] * fragments.h[i]
+        u, v = fragments.patch[0, i], fragments.patch[1, i]
+        to_h = eye[2] - eye[3] * fragments.patch[2, i]
         if not to_h > 0.0:
             continue
         along_u = (eye[0] - eye[3] * u) / to_h
@@ -77,4 +77,4 @@ def texture_search(fragments, count, settings, hits):
     """Texture mapping: every fragment hits the polygon where it is."""
     for i in range(count):
         hits.hit_index[i] = settings.linear_steps << settings.binary_steps
-        hits.u[i], hits.v[i], hits.h[i] = fragments.u[i], fragments.v[i], 0.0
+        hits.u[i], hits.v[i], hits.h[i] = fragments.patch[0, i], fragments.patch[1, i], 0.0

@@ -98,7 +98,16 @@ def _stages(faces: list[Faces], target: Target, size: tuple[int, int]) -> dict[s
     }
     groups = {
         "raster": ("face", "patch_id", "patch"),
-        "march": ("linear_index", "hit_index", "hit", "height_before", "steep", "margin", "domain_margin", "steep_margin"),
+        "march": (
+            "linear_index",
+            "hit_index",
+            "hit",
+            "height_before",
+            "steep",
+            "margin",
+            "domain_margin",
+            "steep_margin",
+        ),
         "shade": ("albedo", "normal", "lit", "lit_margin", "axis_margin", "facing_margin"),
     }
     for group, names in groups.items():

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.displacement.buffers import index_lanes, lanes, store
 from ibr_ref.jit import LANES, device, kernel, prange
 from ibr_ref.pipeline.merge import passes
 
@@ -78,27 +79,18 @@ def target_for(pixels: int, keep: bool) -> Target:
 @device
 def _clear_part(target, background, first, last):
     for i in range(first, last):
-        target.color[i, 0], target.color[i, 1], target.color[i, 2] = background[0], background[1], background[2]
-    target.depth[first:last] = 1.0
-    if len(target.face) == 0:
-        return
-    for ints in (target.face, target.patch_id, target.linear_index, target.hit_index):
-        ints[first:last] = -1
-    for bools in (target.steep, target.lit):
-        bools[first:last] = False
-    for triples in (target.patch, target.hit, target.albedo, target.normal):
-        triples[first:last] = np.nan
-    for floats in (
-        target.height_before,
-        target.margin,
-        target.domain_margin,
-        target.steep_margin,
-        target.lit_margin,
-        target.axis_margin,
-        target.facing_margin,
-    ):
-        floats[first:last] = np.nan
-    target.second[first:last] = np.inf
+        target.depth[i] = 1.0
+        for channel in range(3):
+            target.color[i, channel] = background[channel]
+    for i in range(first, last if len(target.face) > 0 else first):
+        target.face[i] = target.patch_id[i] = target.linear_index[i] = target.hit_index[i] = -1
+        target.steep[i] = target.lit[i] = False
+        target.height_before[i] = target.margin[i] = target.domain_margin[i] = target.steep_margin[i] = np.nan
+        target.lit_margin[i] = target.axis_margin[i] = target.facing_margin[i] = np.nan
+        target.second[i] = np.inf
+        for channel in range(3):
+            target.patch[i, channel] = target.hit[i, channel] = np.nan
+            target.albedo[i, channel] = target.normal[i, channel] = np.nan
 
 
 @kernel
@@ -127,8 +119,8 @@ def project_hits(fragments, count, constants, settings, hits):
     )
     row_z = (clip[2, 0], clip[2, 1], clip[2, 2], clip[2, 3])
     row_w = (clip[3, 0], clip[3, 1], clip[3, 2], clip[3, 3])
-    u, v, h, depth = np.empty((4, LANES))
-    index = np.empty(LANES, np.int32)
+    u, v, h, depth = lanes(), lanes(), lanes(), lanes()
+    index = index_lanes()
     for first in range(0, count, LANES):
         for lane in range(LANES):
             i = first + lane
@@ -148,12 +140,11 @@ def project_hits(fragments, count, constants, settings, hits):
             v[lane] = p_v if kept else np.nan
             h[lane] = p_h if kept else np.nan
             depth[lane] = clip_z / clip_w
-        last = first + LANES
-        hits.hit_index[first:last] = index
-        hits.u[first:last] = u
-        hits.v[first:last] = v
-        hits.h[first:last] = h
-        hits.depth[first:last] = depth
+        store(index, hits.hit_index, first)
+        store(u, hits.u, first)
+        store(v, hits.v, first)
+        store(h, hits.h, first)
+        store(depth, hits.depth, first)
     for i in range(count):
         if hits.hit_index[i] < 0:
             hits.linear_index[i] = -1
@@ -224,7 +215,7 @@ def write_stages(fragments, hits, count, patch_id, verdicts, target):
     for i in range(count):
         if verdicts[i] != HIDDEN:
             target.patch_id[pixels[i]] = patch_id
-    _copy_triple(verdicts, pixels, count, fragments.u, fragments.v, fragments.h, target.patch)
+    _copy_triple(verdicts, pixels, count, fragments.patch[0], fragments.patch[1], fragments.patch[2], target.patch)
     _copy_triple(verdicts, pixels, count, hits.u, hits.v, hits.h, target.hit)
     _copy(verdicts, pixels, count, hits.linear_index, target.linear_index)
     _copy(verdicts, pixels, count, hits.hit_index, target.hit_index)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.displacement.buffers import lanes, store
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch, footprint, mix_channel
 
@@ -33,7 +34,9 @@ def gradient(repeat, texels, columns, rows, u, v):
     """(g_u, g_v) of the height map at (u, v), from one texel to either side."""
     step_u, step_v = 1.0 / columns, 1.0 / rows
     g_u = _slope(
-        fetch(texels, columns, rows, repeat, u + step_u, v), fetch(texels, columns, rows, repeat, u - step_u, v), columns
+        fetch(texels, columns, rows, repeat, u + step_u, v),
+        fetch(texels, columns, rows, repeat, u - step_u, v),
+        columns,
     )
     g_v = _slope(
         fetch(texels, columns, rows, repeat, u, v + step_v), fetch(texels, columns, rows, repeat, u, v - step_v), rows
@@ -48,7 +51,7 @@ def height_normals(repeat, hits, count, texels, columns, rows, constants, normal
     ux, uy, uz = across[0, 0], across[0, 1], across[0, 2]
     vx, vy, vz = across[1, 0], across[1, 1], across[1, 2]
     n0, n1, n2 = n[0], n[1], n[2]
-    g_u, g_v, x, y, z = np.empty((5, LANES))
+    g_u, g_v, x, y, z = lanes(), lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
         for lane in range(LANES):
             g_u[lane], g_v[lane] = gradient(repeat, texels, columns, rows, hits.u[first + lane], hits.v[first + lane])
@@ -58,10 +61,9 @@ def height_normals(repeat, hits, count, texels, columns, rows, constants, normal
                 n1 - scale * (g_u[lane] * uy + g_v[lane] * vy),
                 n2 - scale * (g_u[lane] * uz + g_v[lane] * vz),
             )
-        last = first + LANES
-        normal[0, first:last] = x
-        normal[1, first:last] = y
-        normal[2, first:last] = z
+        store(x, normal[0], first)
+        store(y, normal[1], first)
+        store(z, normal[2], first)
 
 
 @device
@@ -71,7 +73,7 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
     tx, ty, tz = frame[0, 0], frame[0, 1], frame[0, 2]
     bx, by, bz = frame[1, 0], frame[1, 1], frame[1, 2]
     nx, ny, nz = frame[2, 0], frame[2, 1], frame[2, 2]
-    x, y, z = np.empty((3, LANES))
+    x, y, z = lanes(), lanes(), lanes()
     r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
     for first in range(0, count, LANES):
         for lane in range(LANES):
@@ -83,16 +85,15 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
             x[lane], y[lane], z[lane] = _unit(
                 m0 * tx + m1 * bx + m2 * nx, m0 * ty + m1 * by + m2 * ny, m0 * tz + m1 * bz + m2 * nz
             )
-        last = first + LANES
-        normal[0, first:last] = x
-        normal[1, first:last] = y
-        normal[2, first:last] = z
+        store(x, normal[0], first)
+        store(y, normal[1], first)
+        store(z, normal[2], first)
 
 
 @device
 def albedos(repeat, hits, count, texels, columns, rows, albedo):
     """The colour map at the hits."""
-    red, green, blue = np.empty((3, LANES))
+    red, green, blue = lanes(), lanes(), lanes()
     r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
     for first in range(0, count, LANES):
         for lane in range(LANES):
@@ -100,10 +101,9 @@ def albedos(repeat, hits, count, texels, columns, rows, albedo):
             red[lane] = mix_channel(texels, r, i00, i10, i01, i11, fx, fy)
             green[lane] = mix_channel(texels, g, i00, i10, i01, i11, fx, fy)
             blue[lane] = mix_channel(texels, b, i00, i10, i01, i11, fx, fy)
-        last = first + LANES
-        albedo[0, first:last] = red
-        albedo[1, first:last] = green
-        albedo[2, first:last] = blue
+        store(red, albedo[0], first)
+        store(green, albedo[1], first)
+        store(blue, albedo[2], first)
 
 
 @device
@@ -148,7 +148,11 @@ def facades(repeat, hits, count, texels, columns, rows, facade, facade_columns, 
         normal, faces_u, margin = _wall(repeat, texels, columns, rows, constants, u, v)
         along = v * constants.lengths[1] if faces_u else u * constants.lengths[0]
         i00, i10, i01, i11, fx, fy = footprint(
-            along / constants.tile[0], -hits.h[i] * constants.scale / constants.tile[1], facade_columns, facade_rows, True
+            along / constants.tile[0],
+            -hits.h[i] * constants.scale / constants.tile[1],
+            facade_columns,
+            facade_rows,
+            True,
         )
         shades.axis_margin[i] = margin
         for channel in range(3):
@@ -195,7 +199,7 @@ def light_hits(hits, count, constants, shades):
     h0, h1, h2 = a[2, 0], a[2, 1], a[2, 2]
     ambient, diffuse, specular = constants.phong[0], constants.phong[1], constants.phong[2]
     exponent = constants.exponent
-    red, green, blue, facing = np.empty((4, LANES))
+    red, green, blue, facing = lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
         for lane in range(LANES):
             i = first + lane
@@ -219,8 +223,7 @@ def light_hits(hits, count, constants, shades):
             green[lane] = _phong(shades.albedo[1, i], ambient, bright, shine)
             blue[lane] = _phong(shades.albedo[2, i], ambient, bright, shine)
             facing[lane] = abs(cosine)
-        last = first + LANES
-        shades.color[0, first:last] = red
-        shades.color[1, first:last] = green
-        shades.color[2, first:last] = blue
-        shades.facing_margin[first:last] = facing
+        store(red, shades.color[0], first)
+        store(green, shades.color[1], first)
+        store(blue, shades.color[2], first)
+        store(facing, shades.facing_margin, first)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.displacement.patch_space import Uniforms
-from ibr_ref.jit import kernel, prange
+from ibr_ref.jit import routine
 from ibr_ref.scene import checks
 
 Array = NDArray[np.float64]
@@ -61,31 +61,36 @@ def extended_base(eye: Array) -> Array:
     Raises ValueError if the eye is not above the top of the volume: its projection onto the base is infinite then.
     """
     if not eye[2] > eye[3]:
-        raise checks.reject("faces", "extended", f"an eye above the volume (its height is {eye[2]:g}, the top's {eye[3]:g})")
+        raise checks.reject(
+            "faces", "extended", f"an eye above the volume (its height is {eye[2]:g}, the top's {eye[3]:g})"
+        )
     u, v = [0.0, 1.0], [0.0, 1.0]
     for corner in _QUADS[TOP]:
         towards = eye[:3] - eye[3] * corner
         u.append(corner[0] - towards[0] * (1.0 / towards[2]))
         v.append(corner[1] - towards[1] * (1.0 / towards[2]))
     low, high = (min(u), min(v)), (max(u), max(v))
-    return np.array([(low[0], low[1], 0), (high[0], low[1], 0), (high[0], high[1], 0), (low[0], high[1], 0)], np.float64)
+    return np.array(
+        [(low[0], low[1], 0), (high[0], low[1], 0), (high[0], high[1], 0), (low[0], high[1], 0)], np.float64
+    )
 
 
-@kernel
+@routine
 def transform(patch, corner, axes, view_from_world, clip_from_view, clip):
     """Patch -> world -> view -> clip, one after the other, for each vertex."""
-    for i in prange(len(patch)):
-        u, v, h = patch[i]
-        world = np.empty(3)
-        for j in range(3):
-            world[j] = corner[j] + u * axes[0, j] + v * axes[1, j] + h * axes[2, j]
-        view = np.empty(4)
+    for i in range(len(patch)):
+        u, v, h = patch[i, 0], patch[i, 1], patch[i, 2]
+        x = corner[0] + u * axes[0, 0] + v * axes[1, 0] + h * axes[2, 0]
+        y = corner[1] + u * axes[0, 1] + v * axes[1, 1] + h * axes[2, 1]
+        z = corner[2] + u * axes[0, 2] + v * axes[1, 2] + h * axes[2, 2]
+        m = view_from_world
+        view_x = m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]
+        view_y = m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3]
+        view_z = m[2, 0] * x + m[2, 1] * y + m[2, 2] * z + m[2, 3]
+        view_w = m[3, 0] * x + m[3, 1] * y + m[3, 2] * z + m[3, 3]
+        m = clip_from_view
         for j in range(4):
-            m = view_from_world[j]
-            view[j] = m[0] * world[0] + m[1] * world[1] + m[2] * world[2] + m[3]
-        for j in range(4):
-            m = clip_from_view[j]
-            clip[i, j] = m[0] * view[0] + m[1] * view[1] + m[2] * view[2] + m[3] * view[3]
+            clip[i, j] = m[j, 0] * view_x + m[j, 1] * view_y + m[j, 2] * view_z + m[j, 3] * view_w
 
 
 def vertex_stage(constants: Uniforms, faces: str, interval: str) -> Faces:
@@ -99,7 +104,5 @@ def vertex_stage(constants: Uniforms, faces: str, interval: str) -> Faces:
         quads = _QUADS[numbers]
     patch = np.ascontiguousarray(quads.reshape(-1, 3))
     clip = np.empty((len(patch), 4))
-    transform(
-        patch, constants.corner, constants.axes, constants.view_from_world, constants.clip_from_view, clip
-    )
+    transform(patch, constants.corner, constants.axes, constants.view_from_world, constants.clip_from_view, clip)
     return Faces(np.array(numbers, np.int32), patch, clip)

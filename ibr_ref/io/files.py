@@ -1,14 +1,54 @@
-"""Files that are there completely or not at all."""
+"""Files that are read whole, and files that are written completely or not at all."""
 
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import BinaryIO, cast
+
+_MAX_BYTES = 2**32
+"""Twice the samples of the largest 16-bit image: what is larger is a mistake, not an input."""
+
+
+def contents(path: str | PathLike[str]) -> bytes:
+    """All bytes of a file, at least one.
+
+    Raises OSError or ValueError with the path for a name that does not exist or cannot be read, a folder, a device or
+    pipe (which might never end), and a file that is empty or larger than 4 GiB.
+    """
+    path = Path(path)
+    try:
+        status = path.stat()
+        if stat.S_ISREG(status.st_mode) and 0 < status.st_size <= _MAX_BYTES:
+            return path.read_bytes()
+    except OSError as error:
+        raise type(error)(f"{path}: cannot be read ({error.strerror})") from None
+    if stat.S_ISDIR(status.st_mode):
+        raise IsADirectoryError(f"{path}: is a folder, a file is needed")
+    if not stat.S_ISREG(status.st_mode):
+        raise OSError(f"{path}: is a device or a pipe, a file is needed")
+    raise ValueError(f"{path}: found {status.st_size} bytes, allowed: 1 to 2^32")
+
+
+@contextmanager
+def naming(path: str | PathLike[str]) -> Iterator[None]:
+    """Around a decoder: whatever it raises comes out as a ValueError of one line that starts with the path.
+
+    OSError where memory does not suffice.
+    """
+    try:
+        yield
+    except MemoryError:
+        raise OSError(f"{path}: does not fit in memory") from None
+    except (OSError, SyntaxError, ValueError) as error:
+        raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
+    except Exception as error:  # bad data break the decoders of others in any way
+        raise ValueError(f"{path}: is damaged ({type(error).__name__} {' '.join(str(error).split())})") from None
 
 
 @contextmanager
@@ -18,7 +58,7 @@ def atomic(path: str | PathLike[str]) -> Iterator[BinaryIO]:
     Raises OSError with the path where it cannot be written.
     """
     path = Path(path)
-    if path.is_dir():
+    if os.path.isdir(path):  # Path.is_dir raises for names that are too long
         raise IsADirectoryError(f"{path}: is a folder, a file name is needed")
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{path}: the folder {path.parent} does not exist")
@@ -33,6 +73,9 @@ def atomic(path: str | PathLike[str]) -> Iterator[BinaryIO]:
         os.umask(umask)
         os.chmod(name, 0o666 & ~umask)
         os.replace(name, path)
-    except BaseException:
+    except BaseException as error:
         Path(name).unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.strerror:
+            # A full disk, say: the system's own message names the temporary file, or none.
+            raise OSError(f"{path}: cannot be written ({error.strerror})") from None
         raise

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.jit import device, kernel, prange
+from ibr_ref.jit import device, routine
 from ibr_ref.pipeline.sampling import lerp
 
 _GUARD = 2097152.0  # 2^21: |x_ndc| up to 2^21/width is +-2^20 pixels
@@ -46,24 +46,27 @@ def _distance(plane, x, y, z, w, guard_x, guard_y):
 
 
 @device
+def _plane_distance(plane, polygon, i, guard_x, guard_y):
+    return _distance(plane, polygon[i, 0], polygon[i, 1], polygon[i, 2], polygon[i, 3], guard_x, guard_y)
+
+
+@device
 def _cut(plane, polygon, count, result, guard_x, guard_y):
     """One Sutherland-Hodgman step: cut `polygon[:count]` (clip coordinates, then varyings) into `result`; its count."""
     kept = 0
     for i in range(count):
-        a = polygon[i]
-        b = polygon[i + 1 if i + 1 < count else 0]
-        a_distance = _distance(plane, a[0], a[1], a[2], a[3], guard_x, guard_y)
-        b_distance = _distance(plane, b[0], b[1], b[2], b[3], guard_x, guard_y)
-        if a_distance >= 0.0:
-            result[kept] = a
+        j = i + 1 if i + 1 < count else 0
+        here = _plane_distance(plane, polygon, i, guard_x, guard_y)
+        there = _plane_distance(plane, polygon, j, guard_x, guard_y)
+        if here >= 0.0:
+            for k in range(polygon.shape[1]):
+                result[kept, k] = polygon[i, k]
             kept += 1
-        if (a_distance >= 0.0) != (b_distance >= 0.0):
-            if a_distance >= 0.0:
-                inside, outside, t = a, b, a_distance / (a_distance - b_distance)
-            else:
-                inside, outside, t = b, a, b_distance / (b_distance - a_distance)
-            for j in range(inside.size):
-                result[kept, j] = lerp(inside[j], outside[j], t)
+        if (here >= 0.0) != (there >= 0.0):
+            inside, outside = (i, j) if here >= 0.0 else (j, i)
+            t = here / (here - there) if here >= 0.0 else there / (there - here)
+            for k in range(polygon.shape[1]):
+                result[kept, k] = lerp(polygon[inside, k], polygon[outside, k], t)
             kept += 1
     return kept
 
@@ -79,53 +82,68 @@ def _needs_guard(polygon, count, guard_x, guard_y):
 
 @device
 def _clip_polygon(polygon, spare, guard_x, guard_y):
-    """Clip the triangle in `polygon[:3]`, in place; the number of vertices left (0: nothing)."""
-    count = 3
-    for plane in range(_NEAR, _LEFT):
-        count = _cut(plane, polygon, count, spare, guard_x, guard_y)
-        polygon[:count] = spare[:count]
+    """Clip the triangle in `polygon[:3]` in place, an even number of cuts; the number of vertices left (0: nothing)."""
+    count = _cut(_NEAR, polygon, 3, spare, guard_x, guard_y)
+    count = _cut(_FAR, spare, count, polygon, guard_x, guard_y)
     if _needs_guard(polygon, count, guard_x, guard_y):
-        for plane in range(_LEFT, _TOP + 1):
-            count = _cut(plane, polygon, count, spare, guard_x, guard_y)
-            polygon[:count] = spare[:count]
+        count = _cut(_LEFT, polygon, count, spare, guard_x, guard_y)
+        count = _cut(_RIGHT, spare, count, polygon, guard_x, guard_y)
+        count = _cut(_BOTTOM, polygon, count, spare, guard_x, guard_y)
+        count = _cut(_TOP, spare, count, polygon, guard_x, guard_y)
     return count
 
 
 @device
-def _load(clip, varyings, indices, triangle, polygon):
+def _outside(clip, indices, triangle, guard_x, guard_y):
+    """Whether any plane has to cut the triangle."""
     for corner in range(3):
-        vertex = indices[triangle, corner]
-        polygon[corner, :4] = clip[vertex]
-        polygon[corner, 4:] = varyings[vertex]
+        i = indices[triangle, corner]
+        x, y, z, w = clip[i, 0], clip[i, 1], clip[i, 2], clip[i, 3]
+        if not (0.0 <= z <= w and abs(x) <= guard_x * w and abs(y) <= guard_y * w):
+            return True
+    return False
 
 
-@kernel
-def _count(clip, varyings, indices, guard_x, guard_y, counts):
-    chunk = 256
-    for first in prange((len(indices) + chunk - 1) // chunk):
-        polygon = np.empty((_MOST, 4 + varyings.shape[1]))
-        spare = np.empty_like(polygon)
-        for triangle in range(first * chunk, min(len(indices), (first + 1) * chunk)):
-            _load(clip, varyings, indices, triangle, polygon)
-            counts[triangle] = max(0, _clip_polygon(polygon, spare, guard_x, guard_y) - 2)
+@device
+def _emit(polygon, count, triangle, total, out_clip, out_varyings, out_source):
+    """Append the fan of `polygon[:count]` to the output."""
+    for fan in range(count - 2):
+        out_source[total] = triangle
+        for corner in range(3):
+            vertex = 0 if corner == 0 else fan + corner
+            for k in range(polygon.shape[1]):
+                if k < 4:
+                    out_clip[total, corner, k] = polygon[vertex, k]
+                else:
+                    out_varyings[total, corner, k - 4] = polygon[vertex, k]
+        total += 1
+    return total
 
 
-@kernel
-def _fill(clip, varyings, indices, guard_x, guard_y, offsets, out_clip, out_varyings, out_source):
-    chunk = 256
-    for first in prange((len(indices) + chunk - 1) // chunk):
-        polygon = np.empty((_MOST, 4 + varyings.shape[1]))
-        spare = np.empty_like(polygon)
-        for triangle in range(first * chunk, min(len(indices), (first + 1) * chunk)):
-            _load(clip, varyings, indices, triangle, polygon)
+@routine
+def _clip(clip, varyings, indices, guard_x, guard_y, out_clip, out_varyings, out_source):
+    """Clip all triangles in order; the number of triangles that are left."""
+    polygon = np.empty((_MOST, 4 + varyings.shape[1]))
+    spare = np.empty_like(polygon)
+    total = 0
+    for triangle in range(len(indices)):
+        for corner in range(3):
+            vertex = indices[triangle, corner]
+            for k in range(polygon.shape[1]):
+                polygon[corner, k] = clip[vertex, k] if k < 4 else varyings[vertex, k - 4]
+        count = 3
+        if _outside(clip, indices, triangle, guard_x, guard_y):
             count = _clip_polygon(polygon, spare, guard_x, guard_y)
-            for fan in range(count - 2):
-                out = offsets[triangle] + fan
-                out_source[out] = triangle
-                for corner in range(3):
-                    vertex = 0 if corner == 0 else fan + corner
-                    out_clip[out, corner] = polygon[vertex, :4]
-                    out_varyings[out, corner] = polygon[vertex, 4:]
+        total = _emit(polygon, count, triangle, total, out_clip, out_varyings, out_source)
+    return total
+
+
+def _most_triangles(clip: NDArray[np.float64], indices: NDArray[np.int32], guard_x: float, guard_y: float) -> int:
+    """Room for all results: a triangle with all corners inside stays one, another becomes at most a fan of seven."""
+    x, y, z, w = clip.T
+    inside = (z >= 0.0) & (z <= w) & (abs(x) <= guard_x * w) & (abs(y) <= guard_y * w)
+    whole = int(inside[indices].all(axis=1).sum())
+    return whole + (len(indices) - whole) * (_MOST - 2)
 
 
 def clip_triangles(
@@ -136,12 +154,9 @@ def clip_triangles(
     clip (V, 4), varyings (V, K), indices (T, 3); the result keeps the triangles' order.
     """
     guard_x, guard_y = _GUARD / width, _GUARD / height
-    counts = np.zeros(len(indices), np.int64)
-    _count(clip, varyings, indices, guard_x, guard_y, counts)
-    ends = np.cumsum(counts)
-    total = int(ends[-1]) if len(ends) else 0
-    result = ClippedTriangles(
-        np.empty((total, 3, 4)), np.empty((total, 3, varyings.shape[1])), np.empty(total, np.int32)
-    )
-    _fill(clip, varyings, indices, guard_x, guard_y, ends - counts, *result)
-    return result
+    room = _most_triangles(clip, indices, guard_x, guard_y)
+    out_clip = np.empty((room, 3, 4))
+    out_varyings = np.empty((room, 3, varyings.shape[1]))
+    source = np.empty(room, np.int32)
+    total = _clip(clip, varyings, indices, guard_x, guard_y, out_clip, out_varyings, source)
+    return ClippedTriangles(out_clip[:total], out_varyings[:total], source[:total])

@@ -137,17 +137,25 @@ def columns_in_row(edges, width):
 
 
 @device
-def fill_varying(edges, first, stop, values, w, out, out_first):
-    """Write the perspective-correct varying with the corner `values` (3,) for the columns [first, stop) to out."""
-    a0, a1, a2 = values[0], values[1], values[2]
+def fill_varyings(edges, first, stop, corners, w, out, start):
+    """Perspective-correct varyings with the values `corners` (3, K), for the columns [first, stop), into out[:, start:].
+
+    A varying that is the same at all corners and 0 or 1 is so exactly, by the same formula: it needs no division.
+    """
     w0, w1, w2 = w[0], w[1], w[2]
-    for i in range(stop - first):
-        column = first + i
-        e0 = np.float64(edges.e0 + edges.step0 * column)
-        e1 = np.float64(edges.e1 + edges.step1 * column)
-        e2 = np.float64(edges.e2 + edges.step2 * column)
-        over_w = e0 / w0 + e1 / w1 + e2 / w2
-        out[out_first + i] = (e0 * a0 / w0 + e1 * a1 / w1 + e2 * a2 / w2) / over_w
+    for k in range(corners.shape[1]):
+        a0, a1, a2 = corners[0, k], corners[1, k], corners[2, k]
+        if a0 == a1 and a1 == a2 and (a0 == 0.0 or a0 == 1.0):
+            for i in range(start, start + stop - first):
+                out[k, i] = a0
+            continue
+        for i in range(stop - first):
+            column = first + i
+            e0 = np.float64(edges.e0 + edges.step0 * column)
+            e1 = np.float64(edges.e1 + edges.step1 * column)
+            e2 = np.float64(edges.e2 + edges.step2 * column)
+            over_w = e0 / w0 + e1 / w1 + e2 / w2
+            out[k, start + i] = (e0 * a0 / w0 + e1 * a1 / w1 + e2 * a2 / w2) / over_w
 
 
 @device

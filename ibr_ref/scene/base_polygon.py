@@ -64,7 +64,9 @@ class BasePolygon:
         if not area > 1e-12 * lengths[0] * lengths[1]:
             raise checks.reject("edge_v", edge_v.tolist(), f"a vector not parallel to edge_u = {edge_u.tolist()}")
         if not 1e-100 < area * self.height_scale < 1e100:
-            raise checks.reject("height_scale", self.height_scale, "a volume between 1e-100 and 1e100 cubic world units")
+            raise checks.reject(
+                "height_scale", self.height_scale, "a volume between 1e-100 and 1e100 cubic world units"
+            )
 
     @property
     def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,9 +16,7 @@ MOST_PIXELS = 65536
 
 
 def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.array(
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    )
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
@@ -25,7 +24,7 @@ def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
 
 
 def _normalized(a: NDArray[np.float64]) -> NDArray[np.float64]:
-    return a / np.sqrt(_dot(a, a))
+    return a / math.sqrt(_dot(a, a))
 
 
 def _view(eye: ArrayLike, target: ArrayLike, up: ArrayLike) -> NDArray[np.float64]:
@@ -209,7 +208,9 @@ class Camera:
         r = checks.matrix("rotation", rotation, 3, 3)
         defect = float(np.linalg.norm(r.T @ r - np.eye(3)))
         if defect > 1e-3 or np.linalg.det(r) < 0.0:
-            raise checks.reject("rotation", r.tolist(), f"a rotation (|R^T R - I| = {defect:.3g} must be <= 1e-3, det > 0)")
+            raise checks.reject(
+                "rotation", r.tolist(), f"a rotation (|R^T R - I| = {defect:.3g} must be <= 1e-3, det > 0)"
+            )
         near, far = _planes(near, far, above=0.0)
         width, height = _size(width, height)
         view = np.eye(4)

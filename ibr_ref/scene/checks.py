@@ -17,7 +17,9 @@ def reject(field: str, found: object, allowed: str) -> ValueError:
     return ValueError(f"{field}: found {found!r}, allowed: {allowed}")
 
 
-def number(field: str, value: Any, *, low: float = -math.inf, above: float = -math.inf, high: float = math.inf) -> float:
+def number(
+    field: str, value: Any, *, low: float = -math.inf, above: float = -math.inf, high: float = math.inf
+) -> float:
     """A finite float with low <= value <= high and value > above."""
     allowed = "a finite number"
     allowed += f" > {above:g}" if above > -math.inf else f" >= {low:g}" if low > -math.inf else ""

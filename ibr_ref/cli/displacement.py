@@ -1,0 +1,160 @@
+"""`ibr-ref render displacement`."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ibr_ref.cli import options
+from ibr_ref.cli.progress import progress
+
+if TYPE_CHECKING:
+    from ibr_ref.scene import BasePolygon
+
+EXAMPLES = """
+Examples:
+
+    ibr-ref render displacement --height h.png --color c.png --out image.png
+
+    ibr-ref render displacement --height h.png --invert-height --color c.png --normal n.png --height-scale 0.1 --steps 50
+    --out image.png --stages dump.npz
+"""
+
+
+class Method(StrEnum):
+    """Search for the hit."""
+
+    protruded = "protruded"
+    exact = "exact"
+    relief = "relief"
+    texture = "texture"
+
+
+class Interval(StrEnum):
+    """Stretch of the view ray that is searched."""
+
+    paper = "paper"
+    volume = "volume"
+
+
+class FaceSet(StrEnum):
+    """Faces of the volume that are drawn."""
+
+    auxiliary = "auxiliary"
+    base = "base"
+    extended = "extended"
+
+
+def command(
+    out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
+    height: Annotated[
+        Path | None, typer.Option(help="Height map, white is high: grey PNG (8 or 16 bits) or JPEG.")
+    ] = None,
+    normal_height: Annotated[
+        Path | None,
+        typer.Option(help="Instead of --height and --normal: RGBA, the normal in RGB, the height in alpha."),
+    ] = None,
+    color: Annotated[Path | None, typer.Option(help="Colour map. Without: greys by height.")] = None,
+    normal: Annotated[Path | None, typer.Option(help="Normal map (+y is up). Without: from the heights.")] = None,
+    facade: Annotated[Path | None, typer.Option(help="Tile that covers steep walls.")] = None,
+    facade_tile: Annotated[str, typer.Option(metavar="W,H", help="Size of a facade tile, world units.")] = "0.1,0.1",
+    invert_height: Annotated[bool, typer.Option("--invert-height", help="White is deep in the height map.")] = False,
+    height_scale: Annotated[
+        float, typer.Option(help="Height of white, world units; the map's longer side is 1.")
+    ] = 0.15,
+    eye: Annotated[str, typer.Option(metavar="X,Y,Z", help="The eye; z is up, the map is centred at the origin.")] = (
+        "0.6,-1.25,0.95"
+    ),
+    target: Annotated[str, typer.Option(metavar="X,Y,Z", help="The point looked at.")] = "0,0,0",
+    fov: Annotated[float, typer.Option(help="Vertical field of view, degrees.")] = 45.0,
+    light: Annotated[str, typer.Option(metavar="X,Y,Z", help="Direction towards the light.")] = "-0.6,-0.5,1",
+    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels of the picture.")] = "640x480",
+    steps: Annotated[int, typer.Option(help="N, steps of the linear search.")] = 10,
+    binary_steps: Annotated[int, typer.Option(help="M, steps of the binary search.")] = 6,
+    delta: Annotated[float, typer.Option(help="Threshold of a steep wall, in units of the height.")] = 0.1,
+    shadow_steps: Annotated[int, typer.Option(help="Samples towards the light; 0: no self-shadow.")] = 0,
+    interval: Annotated[Interval, typer.Option(help="Stretch of the view ray that is searched.")] = Interval.paper,
+    faces: Annotated[FaceSet, typer.Option(help="Faces of the volume that are drawn.")] = FaceSet.auxiliary,
+    method: Annotated[Method, typer.Option(help="Search for the hit.")] = Method.protruded,
+    stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+) -> None:
+    """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
+    eye_, target_, light_ = options.vector(eye), options.vector(target), options.vector(light)
+    width, rows = options.size(size)
+    with progress(3) as step:
+        step("reading maps")
+        from ibr_ref import displacement
+        from ibr_ref.scene import Camera, Light
+
+        polygon = _polygon(
+            height, normal_height, color, normal, facade, options.pair(facade_tile), invert_height, height_scale
+        )
+        scene = displacement.Scene(
+            polygons=[polygon],
+            camera=Camera.look_at(
+                eye=eye_, target=target_, up=(0, 0, 1) if eye_[:2] != target_[:2] else (0, 1, 0),
+                vertical_fov=fov, near=0.01, far=100.0, width=width, height=rows,
+            ),
+            light=Light(direction=light_),
+            background=(1.0, 1.0, 1.0),
+        )  # fmt: skip
+        params = displacement.Params(
+            linear_steps=steps,
+            binary_steps=binary_steps,
+            steep_threshold=delta,
+            shadow_steps=shadow_steps,
+            interval=interval.value,
+            faces=faces.value,
+            method=method.value,
+        )
+        step("rendering")
+        frame = displacement.render(scene, params, stages=stages is not None)
+        step("writing")
+        if stages is not None:
+            frame.save_stages(stages)
+        frame.save(out)
+
+
+def _polygon(
+    height: Path | None,
+    normal_height: Path | None,
+    color: Path | None,
+    normal: Path | None,
+    facade: Path | None,
+    facade_tile: tuple[float, float],
+    invert_height: bool,
+    height_scale: float,
+) -> BasePolygon:
+    """The maps on a rectangle of their own shape: longer side 1, centred, z up, the images' top edge at +y.
+
+    Rows are turned over: texture row 0 lies at v = 0, which must be at -y for the polygon's normal to point up.
+    """
+    from ibr_ref import io
+    from ibr_ref.scene import BasePolygon
+
+    if (height is None) == (normal_height is None) or (normal_height is not None and normal is not None):
+        raise typer.BadParameter("give either --height (and perhaps --normal) or --normal-height")
+    normals = None if normal is None else io.read_normal(normal)
+    if normal_height is not None:
+        normals, heights = io.read_normal_height(normal_height)
+    else:
+        assert height is not None
+        heights = io.read_height(height)
+    heights = 1.0 - heights if invert_height else heights
+    colors = io.read_color(color) if color else 0.25 + 0.65 * heights[..., None].repeat(3, axis=2)
+    longest = max(heights.shape)
+    across, along = heights.shape[1] / longest, heights.shape[0] / longest
+    return BasePolygon(
+        corner=(-across / 2, -along / 2, 0.0),
+        edge_u=(across, 0.0, 0.0),
+        edge_v=(0.0, along, 0.0),
+        height_map=heights[::-1],
+        color_map=colors[::-1],
+        normal_map=None if normals is None else normals[::-1],
+        facade_map=None if facade is None else io.read_color(facade),
+        facade_tile=facade_tile,
+        height_scale=height_scale,
+    )

@@ -1,0 +1,40 @@
+"""Option values that are more than a word or a number."""
+
+from __future__ import annotations
+
+import click
+
+Vector = tuple[float, float, float]
+
+
+def _numbers(text: str, count: int, example: str) -> tuple[float, ...]:
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != count or any(v != v or abs(v) == float("inf") for v in values):
+        raise click.BadParameter(f"found {text!r}, allowed: {count} numbers, such as {example}")
+    return values
+
+
+def vector(text: str) -> Vector:
+    """X,Y,Z."""
+    x, y, z = _numbers(text, 3, "1.0,-2.5,0.3")
+    return x, y, z
+
+
+def pair(text: str) -> tuple[float, float]:
+    """W,H in world units."""
+    w, h = _numbers(text, 2, "0.1,0.1")
+    return w, h
+
+
+def size(text: str) -> tuple[int, int]:
+    """WIDTHxHEIGHT in pixels."""
+    parts = text.lower().split("x")
+    if len(parts) != 2 or not all(part.isascii() and part.isdigit() for part in parts):
+        raise click.BadParameter(f"found {text!r}, allowed: WIDTHxHEIGHT in pixels, such as 640x480")
+    width, height = int(parts[0]), int(parts[1])
+    if not (1 <= width <= 65536 and 1 <= height <= 65536 and width * height <= 2**28):
+        raise click.BadParameter(f"found {text!r}, allowed: sides from 1 to 65536, at most 2^28 pixels")
+    return width, height

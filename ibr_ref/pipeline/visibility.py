@@ -1,0 +1,118 @@
+"""Meshes with a depth buffer: which triangle each pixel shows, its depth, and varyings there.
+
+For passes without discard or depth changes in the fragment stage. Triangles are sorted into bands of rows; a band
+belongs to one thread, which draws its triangles in submission order, so that ties go to the earlier one.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.jit import device, kernel, prange, routine
+from ibr_ref.pipeline.merge import passes
+from ibr_ref.pipeline.triangles import Triangles, columns_in_row, edges_in_row, fill_depth, fill_varyings
+
+BAND_ROWS = 16
+
+
+class Visible(NamedTuple):
+    """What a picture shows of a list of triangles."""
+
+    triangle: NDArray[np.int32]
+    """(H, W) index into the rasterized (clipped) triangles; -1 none."""
+    depth: NDArray[np.float64]
+    """(H, W) window depth; 1 where nothing is."""
+
+
+@routine
+def _count_in_bands(rows, counts):
+    for t in range(len(rows)):
+        if rows[t, 1] > rows[t, 0]:
+            for band in range(rows[t, 0] // BAND_ROWS, (rows[t, 1] - 1) // BAND_ROWS + 1):
+                counts[band] += 1
+
+
+@routine
+def _sort_into_bands(rows, ends, members):
+    """Triangles of each band in submission order; `ends` holds the band's start and is moved to its end."""
+    for t in range(len(rows)):
+        if rows[t, 1] > rows[t, 0]:
+            for band in range(rows[t, 0] // BAND_ROWS, (rows[t, 1] - 1) // BAND_ROWS + 1):
+                members[ends[band]] = t
+                ends[band] += 1
+
+
+@device
+def _draw_triangle(triangles, t, first_row, last_row, spare, winner, depth):
+    """Depth-test one triangle in the rows [first_row, last_row) of the picture."""
+    for row in range(max(first_row, triangles.rows[t, 0]), min(last_row, triangles.rows[t, 1])):
+        edges = edges_in_row(triangles.x[t], triangles.y[t], row)
+        first, stop = columns_in_row(edges, winner.shape[1])
+        fill_depth(edges, first, stop, triangles.z[t], spare, 0)
+        for column in range(first, stop):
+            if passes(spare[column - first], depth[row, column]):
+                depth[row, column] = spare[column - first]
+                winner[row, column] = t
+
+
+@device
+def _draw_band(triangles, members, first_row, last_row, winner, depth):
+    spare = np.empty(winner.shape[1])
+    for row in range(first_row, last_row):
+        for column in range(winner.shape[1]):
+            winner[row, column] = -1
+            depth[row, column] = 1.0
+    for i in range(len(members)):
+        _draw_triangle(triangles, members[i], first_row, last_row, spare, winner, depth)
+
+
+@kernel
+def _draw(triangles, members, starts, winner, depth):
+    for band in prange(len(starts) - 1):
+        first_row = band * BAND_ROWS
+        last_row = min(winner.shape[0], first_row + BAND_ROWS)
+        _draw_band(triangles, members[starts[band] : starts[band + 1]], first_row, last_row, winner, depth)
+
+
+def visible(triangles: Triangles, width: int, height: int) -> Visible:
+    """Rasterize triangles with the depth test LESS against a buffer cleared to 1."""
+    counts = np.zeros(-(-height // BAND_ROWS), np.int64)
+    _count_in_bands(triangles.rows, counts)
+    starts = np.concatenate([np.zeros(1, np.int64), np.cumsum(counts)])
+    members = np.empty(int(starts[-1]), np.int32)
+    _sort_into_bands(triangles.rows, starts[:-1].copy(), members)
+    result = Visible(np.empty((height, width), np.int32), np.empty((height, width)))
+    _draw(triangles, members, starts, *result)
+    return result
+
+
+@device
+def _varyings_in_row(triangles, winner, row, spare, out):
+    """Runs of pixels that show the same triangle get their varyings together."""
+    column, width = 0, winner.shape[1]
+    while column < width:
+        t, first = winner[row, column], column
+        while column < width and winner[row, column] == t:
+            column += 1
+        if t >= 0:
+            edges = edges_in_row(triangles.x[t], triangles.y[t], row)
+            fill_varyings(edges, first, column, triangles.varyings[t], triangles.w[t], spare, 0)
+        for i in range(first, column):
+            for k in range(out.shape[2]):
+                out[row, i, k] = spare[k, i - first] if t >= 0 else np.nan
+
+
+@kernel
+def _interpolate(triangles, winner, out):
+    for row in prange(winner.shape[0]):
+        _varyings_in_row(triangles, winner, row, np.empty((out.shape[2], winner.shape[1])), out)
+
+
+def interpolate(triangles: Triangles, winner: NDArray[np.int32]) -> NDArray[np.float64]:
+    """(H, W, K) perspective-correct varyings of the triangles that `winner` (H, W) names; NaN where it is -1."""
+    out = np.empty((*winner.shape, triangles.varyings.shape[2]))
+    _interpolate(triangles, winner, out)
+    return out

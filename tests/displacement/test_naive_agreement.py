@@ -1,0 +1,175 @@
+"""The package agrees with the naive twin bit for bit: on 200 drawn scenes, and on the built-in models."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, event, given, settings
+from numpy.typing import NDArray
+
+from ibr_ref import displacement, models
+from ibr_ref.displacement import Params, Scene
+from ibr_ref.io import Frame
+from ibr_ref.scene import BasePolygon, Camera, Light
+from tests import naive
+from tests.displacement.features import features
+from tests.displacement.strategies import Case, cases
+from tests.naive import displacement as twin
+
+Arrays = dict[str, NDArray[np.generic]]
+
+SCENES = 200
+
+seen: Counter[str] = Counter()
+"""In how many of the drawn scenes each feature occurred; "scenes" counts them all."""
+
+LEAST = {
+    "out: something shown": 0.75 * SCENES,
+    "out: hit protruded": 0.3 * SCENES,
+    "out: hit relief": 0.08 * SCENES,
+}
+"""Scenes that must show a feature, where the usual `FEW` are not enough."""
+
+FEW = 4
+
+
+# --- Comparison ------------------------------------------------------------------------------------------------------
+
+
+def arrays_of(frame: Frame) -> Arrays:
+    """The stages of a frame, and its picture and depth with them."""
+    return {**frame.stages, "color": frame.color, "depth": frame.depth}
+
+
+def twin_arrays(scene: Scene, params: Params) -> Arrays:
+    """The same by the naive twin."""
+    stages, color, depth = twin.render(scene, params)
+    return {**stages, "color": color, "depth": depth}
+
+
+def difference(name: str, ours: NDArray[np.generic], theirs: NDArray[np.generic]) -> str:
+    """Where two arrays differ in a bit (NaN equals NaN, -0.0 equals 0.0), in words; empty where they do not."""
+    if (ours.shape, ours.dtype) != (theirs.shape, theirs.dtype):
+        return f"{name}: package {ours.shape} {ours.dtype}, twin {theirs.shape} {theirs.dtype}"
+    differ = (ours != theirs) & ~((ours != ours) & (theirs != theirs))
+    if not differ.any():
+        return ""
+    where = tuple(int(i) for i in np.argwhere(differ)[0])
+    place = f"vertex {where[0]}" if name.startswith("vertex.") else f"pixel (x={where[1]}, y={where[0]})"
+    channel = f" channel {where[-1]}" if len(where) > (1 if name.startswith("vertex.") else 2) else ""
+    count = np.count_nonzero(differ)
+    return (
+        f"{name}: {place}{channel}: package {ours[where]!r}, twin {theirs[where]!r} ({count} of {differ.size} differ)"
+    )
+
+
+def differences(ours: Arrays, theirs: Arrays) -> str:
+    """All differences between two frames, in the order of the stages; empty where there are none."""
+    lines = [f"{name}: only in one of both" for name in sorted(set(ours) ^ set(theirs))]
+    lines += [difference(name, ours[name], theirs[name]) for name in ours if name in theirs]
+    return "\n".join(line for line in lines if line)
+
+
+def check_agreement(scene: Scene, params: Params) -> Frame:
+    """Render with both and compare everything; gives the package's frame."""
+    frame = displacement.render(scene, params)
+    assert not (report := differences(arrays_of(frame), twin_arrays(scene, params))), report
+    return frame
+
+
+def check_without_stages(scene: Scene, params: Params, frame: Frame) -> None:
+    """The same picture and depth come out where no stages are kept."""
+    bare = displacement.render(scene, params, stages=False)
+    assert bare.stages == {}
+    ours = {"color": bare.color, "depth": bare.depth}
+    assert not (report := differences(ours, {"color": frame.color, "depth": frame.depth})), f"stages=False: {report}"
+
+
+# --- Drawn scenes ----------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=SCENES, derandomize=True, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+@given(case=cases())
+def test_drawn_scenes_agree(case: Case) -> None:
+    frame = check_agreement(case.scene, case.params)
+    check_without_stages(case.scene, case.params, frame)
+    found = features(case.scene, case.params, frame)
+    for feature in sorted(found):
+        event(feature)
+    seen.update(["scenes", *found])
+
+
+EXPECTED = """
+in: method protruded | method relief | method texture | interval paper | interval volume
+in: faces auxiliary | faces base | faces extended | depth displaced | depth polygon
+in: one linear step | linear steps | binary steps 0 | binary steps 1 | binary steps 2 | binary steps 3
+in: binary steps 4 | binary steps 5 | binary steps 6 | threshold not positive
+in: self-shadow protruded | self-shadow relief | self-shadow texture | no shadow bias
+in: perspective | orthographic | sheared pixels | mirrored picture | direction from above | direction not from above
+in: eye above the volume | eye above and aside | eye inside the volume | eye beside the volume | eye below the polygon
+in: eye grazing the top | eye grazing the polygon | eye on u | eye on v | eye on h
+in: point light | directional light | specular | exponent 0 | light below the horizon | light inside the volume
+in: domain clip | domain repeat | map 1x1 | map 1xn | map nx1 | map nxn | large map | several polygons
+in: sheared polygon | tilted polygon | height exactly 0 | height exactly 1 | spike of one texel
+in: normal map | facade map | normal and facade map | no normal or facade map
+out: something shown | nothing covers the pixel | kept but not shown | discarded | discarded at the near plane
+out: near plane cuts a face | far plane cuts a face | guard band cuts a face | no faces
+out: face 0 | face 1 | face 2 | face 3 | face 4 | face 5 | tie | tie in depth
+out: hit protruded | hit relief | hit at the start of the ray | hit on the polygon | hit at the last lattice point
+out: steep | facade | steep without facade | in shadow | several polygons shown | hidden fragments
+"""
+"""What must occur in the drawn scenes, each in at least `FEW` of them."""
+
+
+def expected_features() -> list[str]:
+    """The features of `EXPECTED`, with their prefixes."""
+    rows = [row.split(": ") for row in EXPECTED.strip().splitlines()]
+    return [f"{prefix}: {name}" for prefix, names in rows for name in names.split(" | ")]
+
+
+def test_drawn_scenes_cover_every_feature() -> None:
+    if not seen:  # this test was chosen alone
+        test_drawn_scenes_agree()
+    assert seen["scenes"] >= SCENES
+    rare = {name: seen[name] for name in expected_features() if seen[name] < LEAST.get(name, FEW)}
+    assert not rare, f"of {seen['scenes']} scenes too few show: {rare}"
+
+
+# --- Built-in models -------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=["box", "city"])
+def model(request: pytest.FixtureRequest) -> BasePolygon:
+    return models.box() if request.param == "box" else models.city()
+
+
+def test_models_agree(model: BasePolygon) -> None:
+    size = float(np.linalg.norm(np.asarray(model.edge_u)))
+    camera = Camera.look_at(eye=(0.9 * size, -1.1 * size, 0.7 * size), target=(0, 0, 0), width=160, height=120)
+    scene = Scene(polygons=[model], camera=camera, light=Light(direction=(0.5, -0.8, 1.0), specular=0.3))
+    frame = check_agreement(scene, Params())
+    check_without_stages(scene, Params(), frame)
+    found = features(scene, Params(), frame)
+    assert {"out: hit protruded", "out: hit on the polygon", "out: facade", "out: discarded"} <= found
+
+
+# --- The twin itself -------------------------------------------------------------------------------------------------
+
+
+def imported_modules(source: Path) -> set[str]:
+    """Names of all modules that a file imports."""
+    nodes = list(ast.walk(ast.parse(source.read_text())))
+    names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    return names | {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
+
+
+def test_twin_shares_no_code_with_the_package() -> None:
+    folder = Path(naive.__file__).parent
+    sources = sorted(folder.glob("*.py"))
+    assert len(sources) > 4
+    for source in sources:
+        assert not any(name.split(".")[0] in ("ibr_ref", "numba") for name in imported_modules(source)), source.name
