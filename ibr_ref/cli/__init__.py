@@ -9,7 +9,6 @@ from __future__ import annotations
 import sys
 from typing import Annotated
 
-import click
 import typer
 
 from ibr_ref.cli import bench, demo, displacement
@@ -46,18 +45,22 @@ def _options(
     pass
 
 
+def _command_line_error() -> type[Exception]:
+    """The base of all of Typer's own errors: click's ClickException, of which newer versions carry a copy."""
+    return next(base for base in typer.BadParameter.__mro__ if base.__name__ == "ClickException")
+
+
 def main() -> None:
     """Run the command line; bad input ends in one line and exit code 2, an interruption in exit code 130."""
+    usage_error = _command_line_error()
     try:
         code = app(standalone_mode=False)
-    except click.exceptions.NoArgsIsHelpError as error:
-        error.show()
-        code = 2
-    except click.ClickException as error:
-        code = _fail(error.format_message())
+    except usage_error as error:
+        message = error.format_message()  # type: ignore[attr-defined]
+        code = _fail(message) if message else 2  # without arguments the help has been printed
     except (ValueError, OSError, MemoryError) as error:
         code = _fail(str(error) or type(error).__name__)
-    except (KeyboardInterrupt, click.Abort):
+    except (KeyboardInterrupt, typer.Abort):
         code = 130
     sys.exit(code)
 

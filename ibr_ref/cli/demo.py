@@ -67,7 +67,7 @@ def _figure_6() -> list[Picture]:
     from ibr_ref.scene import Camera, Light
 
     box = models.box()
-    camera = Camera.look_at(eye=(0.55, -1.05, 0.62), target=(0.0, 0.03, 0.06), near=0.05, far=10.0)
+    camera = Camera.look_at(eye=(0.65, -1.3, 0.85), target=(0.0, 0.02, 0.08), near=0.05, far=10.0)
     low = displacement.Scene(
         polygons=[replace(box, facade_map=None)],
         camera=camera,
@@ -96,7 +96,7 @@ def _city() -> list[Picture]:
     city = models.city()
     scene = displacement.Scene(
         polygons=[city],
-        camera=Camera.look_at(eye=(1.9, -2.9, 1.75), target=(0.05, 0.0, 0.0), near=0.1, far=20.0),
+        camera=Camera.look_at(eye=(2.1, -3.5, 1.9), target=(0.05, -0.1, 0.05), near=0.1, far=20.0),
         light=Light(direction=(-0.7, -0.5, 1.0)),
         background=(0.72, 0.82, 0.93),
     )
@@ -108,7 +108,7 @@ def _city() -> list[Picture]:
         Picture("figure_15c", "15 (c) protruded: cut at the outline", plain, replace(params, faces="base")),
         Picture("figure_15d", "15 (d) auxiliary faces: the silhouette", plain, params),
         Picture("figure_15e", "15 (e) facades on steep walls", scene, params),
-        Picture("figure_16", "16 the same with shadows", scene, replace(params, shadow_steps=64)),
+        Picture("city_shadows", "the same with self-shadow", scene, replace(params, shadow_steps=64)),
     ]
 
 

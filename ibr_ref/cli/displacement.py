@@ -86,9 +86,12 @@ def command(
     width, rows = options.size(size)
     with progress(3) as step:
         step("reading maps")
-        from ibr_ref import displacement
+        from ibr_ref import displacement, io
         from ibr_ref.scene import Camera, Light
 
+        io.check_image_writable(out)
+        if stages is not None:
+            io.check_writable(stages)
         polygon = _polygon(
             height, normal_height, color, normal, facade, options.pair(facade_tile), invert_height, height_scale
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import click
+import typer
 
 Vector = tuple[float, float, float]
 
@@ -13,7 +13,7 @@ def _numbers(text: str, count: int, example: str) -> tuple[float, ...]:
     except ValueError:
         values = ()
     if len(values) != count or any(v != v or abs(v) == float("inf") for v in values):
-        raise click.BadParameter(f"found {text!r}, allowed: {count} numbers, such as {example}")
+        raise typer.BadParameter(f"found {text!r}, allowed: {count} numbers, such as {example}")
     return values
 
 
@@ -33,8 +33,8 @@ def size(text: str) -> tuple[int, int]:
     """WIDTHxHEIGHT in pixels."""
     parts = text.lower().split("x")
     if len(parts) != 2 or not all(part.isascii() and part.isdigit() for part in parts):
-        raise click.BadParameter(f"found {text!r}, allowed: WIDTHxHEIGHT in pixels, such as 640x480")
+        raise typer.BadParameter(f"found {text!r}, allowed: WIDTHxHEIGHT in pixels, such as 640x480")
     width, height = int(parts[0]), int(parts[1])
     if not (1 <= width <= 65536 and 1 <= height <= 65536 and width * height <= 2**28):
-        raise click.BadParameter(f"found {text!r}, allowed: sides from 1 to 65536, at most 2^28 pixels")
+        raise typer.BadParameter(f"found {text!r}, allowed: sides from 1 to 65536, at most 2^28 pixels")
     return width, height

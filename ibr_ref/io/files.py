@@ -79,3 +79,16 @@ def atomic(path: str | PathLike[str]) -> Iterator[BinaryIO]:
             # A full disk, say: the system's own message names the temporary file, or none.
             raise OSError(f"{path}: cannot be written ({error.strerror})") from None
         raise
+
+
+class _TrialOver(Exception):  # noqa: N818, it is no error
+    """Ends the trial of `check_writable`."""
+
+
+def check_writable(path: str | PathLike[str]) -> None:
+    """Raise what `atomic` would, before long work; nothing is written."""
+    try:
+        with atomic(path):
+            raise _TrialOver
+    except _TrialOver:
+        pass

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.io import jpeg, png
-from ibr_ref.io.files import atomic, contents, naming
+from ibr_ref.io.files import atomic, check_writable, contents, naming
 
 _DECODERS = {png.SIGNATURE: png.decode, jpeg.SIGNATURE: jpeg.decode}
 _FORMATS = {".png": ".png", ".jpg": ".jpg", ".jpeg": ".jpg"}
@@ -51,6 +51,12 @@ def write_image(path: str | PathLike[str], image: ArrayLike, bits: int = 8) -> N
     data = _encoded(samples, kind)
     with atomic(path) as file:
         file.write(data)
+
+
+def check_image_writable(path: str | PathLike[str]) -> None:
+    """Raise what `write_image` would for this name, before long work; nothing is written."""
+    _kind(path, 8)
+    check_writable(path)
 
 
 def _kind(path: str | PathLike[str], bits: int) -> str:

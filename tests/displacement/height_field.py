@@ -95,9 +95,10 @@ def product(p: tuple[Fraction, Fraction], q: tuple[Fraction, Fraction]) -> Polyn
     return p[0] * q[0], p[0] * q[1] + p[1] * q[0], p[1] * q[1]
 
 
-def depth_inside(heights: Array, ray: Ray, middle: Fraction, repeat: bool) -> Polynomial:
-    """H - h along the ray, as a polynomial in t, valid between the breaks around `middle`."""
+def depth_inside(heights: Array, ray: Ray, first: Fraction, last: Fraction, repeat: bool) -> Polynomial | None:
+    """H - h along the ray, as a polynomial in t, valid between two breaks; None where the ray is above all four texels."""
     rows, columns = heights.shape
+    middle = (first + last) / 2
     lines = []
     for axis, size in ((0, columns), (1, rows)):
         a, b = (p[axis] * size - HALF for p in (ray.start, ray.end))
@@ -107,6 +108,8 @@ def depth_inside(heights: Array, ray: Ray, middle: Fraction, repeat: bool) -> Po
     t00, t10 = texel(heights, column, row, repeat), texel(heights, column + 1, row, repeat)
     t01, t11 = texel(heights, column, row + 1, repeat), texel(heights, column + 1, row + 1, repeat)
     xy = product(x, y)
+    if max(t00, t10, t01, t11) < min(ray.at(first)[2], ray.at(last)[2]):
+        return None
     across, along, twist = t10 - t00, t01 - t00, t11 - t10 - t01 + t00
     return (
         t00 + across * x[0] + along * y[0] + twist * xy[0] - ray.start[2],
@@ -144,7 +147,8 @@ def first_inside(heights: Array, ray: Ray | None, repeat: bool = False) -> Fract
     if ray is None:
         return None
     for first, last in pairwise(breaks(ray, heights.shape)):
-        t = becomes_positive(depth_inside(heights, ray, (first + last) / 2, repeat), first, last)
+        inside = depth_inside(heights, ray, first, last, repeat)
+        t = None if inside is None else becomes_positive(inside, first, last)
         if t is not None:
             return t
     return None

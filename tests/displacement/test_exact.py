@@ -6,20 +6,24 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from ibr_ref import Camera
 from ibr_ref.io import Frame
-from tests.displacement.height_field import first_inside, paper_ray, volume_ray
+from tests.displacement.height_field import Ray, first_inside, paper_ray, volume_ray
 from tests.displacement.scenes import SCALE, Array, camera, frame, noise, parallel_camera, patch_eye, square
 
 ROUNDING = 1e-13
 """Of a hit on a ray that meets the surface at an angle: positions are sums of a few numbers below 10."""
 
-CAMERAS = {"perspective": camera(), "orthographic": parallel_camera(), "grazing": camera(eye=(2.0, -1.5, 0.3))}
+CAMERAS = {
+    "perspective": camera(),
+    "orthographic": parallel_camera(),
+    "grazing": camera(eye=(2.0, -1.5, 0.3), vertical_fov=24.0),
+}
 each_camera = pytest.mark.parametrize("view", CAMERAS.values(), ids=CAMERAS)
 
 
@@ -55,7 +59,7 @@ def test_a_plane_is_a_box_with_walls_at_the_border(view: Camera, size: tuple[int
     assert clear.mean() > 0.99
     assert (np.isfinite(found[:, 0]) == (first < last))[clear].all()
     met = clear & (first < last)
-    assert_allclose(found[met], (top + first[:, None] * (bottom - top))[met], atol=ROUNDING)
+    assert_allclose(found[met], (top + first[:, None] * (bottom - top))[met], rtol=0, atol=ROUNDING)
     on_wall = met & (found[:, 2] < height - 1e-9)
     assert on_wall.sum() > 40
     border = np.minimum(abs(found[on_wall, :2]), abs(1 - found[on_wall, :2])).min(axis=1)
@@ -106,20 +110,26 @@ def test_heights_along_u_alone_give_a_polygon(view: Camera, profile: Array, rows
     on_surface = np.isfinite(found[:, 2]) & (found[:, 2] > 0)
     assert on_surface.sum() > 150
     assert (on_surface == np.isfinite(t)).all()
-    assert_allclose(found[on_surface], (top + t[:, None] * (bottom - top))[on_surface], atol=10 * ROUNDING)
+    assert_allclose(found[on_surface], (top + t[:, None] * (bottom - top))[on_surface], rtol=0, atol=10 * ROUNDING)
+
+
+MOST_LINES = 30
+"""Rays that cross more cells of a repeated map are left out: rational numbers are slow."""
 
 
 def check_rational(result: Frame, view: Camera, heights: Array, interval: str = "paper", repeat: bool = False) -> int:
     """Every covered pixel against the first point inside in rational numbers; how many hit the surface.
 
-    Rounding 1e-15 in a height moves the hit by that over the slope of H - h along the ray; rays that only touch the
-    surface may go either way, the rational slope at the hit tells them.
+    Rounding, 1e-15 in a height, moves the hit by that over the slope of H - h along the ray: 1e-10 allows for slopes down
+    to 1e-5. (Rays that only touch the surface might go either way; none of these scenes has one.)
     """
     surface = 0
     for row, column in np.argwhere(result.stages["raster.face"] >= 0):
         c, found = result.stages["raster.patch"][row, column], result.stages["march.hit"][row, column]
         eye = patch_eye(view)
         ray = volume_ray(eye, c) if interval == "volume" else paper_ray(eye, c, bounded=not repeat)
+        if ray is not None and crossings(ray, heights) > MOST_LINES:
+            continue
         t = first_inside(heights, ray, repeat)
         expected = np.array([np.nan] * 3 if t is None or ray is None else [float(x) for x in ray.at(t)])
         depth = near_distance(view, expected)
@@ -128,8 +138,14 @@ def check_rational(result: Frame, view: Camera, heights: Array, interval: str = 
             assert not found[2] > 0, message
         elif depth > 1e-12:
             surface += 1
-            assert_allclose(found, expected, atol=1e-10, err_msg=message)
+            assert_allclose(found, expected, rtol=0, atol=1e-10, err_msg=message)
     return surface
+
+
+def crossings(ray: Ray, heights: Array) -> float:
+    """About how many lines between cells a ray crosses."""
+    (columns, rows), spans = heights.shape[::-1], [abs(float(b - a)) for a, b in zip(ray.start, ray.end, strict=True)]
+    return spans[0] * columns + spans[1] * rows
 
 
 def near_distance(view: Camera, p: Array) -> float:
@@ -145,7 +161,7 @@ BILINEAR = [[(0.1, 0.9), (0.8, 0.2)], [(0.0, 0.0), (0.0, 1.0)], [(1.0, 0.3), (0.
 def test_a_single_bilinear_cell_is_a_quadratic(view: Camera, texels: list[tuple[float, float]]) -> None:
     """2 x 2 texels: one cell between their centres, half a texel of constant height around it."""
     heights = np.array(texels)
-    assert check_rational(frame(square(heights), view, method="exact"), view, heights) > 300
+    assert check_rational(frame(square(heights), view, method="exact"), view, heights) > 180
 
 
 tiny_maps = st.tuples(st.integers(1, 5), st.integers(1, 5), st.integers(0, 10**6)).map(
@@ -153,7 +169,7 @@ tiny_maps = st.tuples(st.integers(1, 5), st.integers(1, 5), st.integers(0, 10**6
 )
 above = st.tuples(st.floats(-1.5, 2.5), st.floats(-1.5, 2.5), st.floats(0.3, 1.5))
 targets = st.tuples(st.floats(0.2, 0.8), st.floats(0.2, 0.8), st.floats(0.0, 0.2))
-few = settings(derandomize=True, deadline=None, max_examples=20)
+few = settings(derandomize=True, deadline=None, max_examples=20, phases=[Phase.explicit, Phase.generate])
 
 
 @few
@@ -172,15 +188,24 @@ def test_any_map_repeated(heights: Array, eye: Any, target: Any, parallel: bool)
     check_rational(result, view, heights, repeat=True)
 
 
-anywhere = st.tuples(st.floats(-0.6, 1.6), st.floats(-0.6, 1.6), st.floats(-0.3, 0.6))
+around = st.tuples(st.floats(-0.6, 1.6), st.floats(-0.6, 1.6), st.floats(0.11, 0.6))
+far_targets = st.tuples(st.floats(0.3, 0.7), st.floats(0.3, 0.7), st.floats(0.01, 0.1))
 
 
 @few
-@given(tiny_maps, anywhere, targets, st.booleans())
-def test_any_map_from_anywhere_in_the_interval_of_the_volume(
-    heights: Array, eye: Any, target: Any, parallel: bool
-) -> None:
-    """From inside the volume, from the side and from below too. An eye in the solid itself sees nothing: the hit is at
-    the eye, in front of the near plane."""
+@given(tiny_maps, around, far_targets, st.booleans())
+def test_any_map_from_beside_or_inside_the_volume(heights: Array, eye: Any, target: Any, parallel: bool) -> None:
+    """An eye in the solid itself sees nothing: the hit is at the eye, in front of the near plane."""
+    view = (parallel_camera if parallel else camera)(eye, target, up=(0.1, 0.9, 0.3), width=7, height=5)
+    check_rational(frame(square(heights), view, method="exact", interval="volume"), view, heights, interval="volume")
+
+
+below = st.tuples(st.floats(-0.6, 1.6), st.floats(-0.6, 1.6), st.floats(-0.6, -0.05))
+
+
+@few
+@given(tiny_maps, below, far_targets, st.booleans())
+def test_any_map_from_below(heights: Array, eye: Any, target: Any, parallel: bool) -> None:
+    """The solid has an underside: a ray that enters the volume through h = 0 below a height > 0 starts inside."""
     view = (parallel_camera if parallel else camera)(eye, target, up=(0.1, 0.9, 0.3), width=7, height=5)
     check_rational(frame(square(heights), view, method="exact", interval="volume"), view, heights, interval="volume")

@@ -1,14 +1,17 @@
-"""The package agrees with the naive twin bit for bit: on 200 drawn scenes, and on the built-in models."""
+"""The package agrees with the naive twin bit for bit: on 300 drawn scenes, and on the built-in models."""
 
 from __future__ import annotations
 
 import ast
+import hashlib
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, event, given, settings
+from hypothesis import HealthCheck, Phase, given, seed, settings
 from numpy.typing import NDArray
 
 from ibr_ref import displacement, models
@@ -17,20 +20,24 @@ from ibr_ref.io import Frame
 from ibr_ref.scene import BasePolygon, Camera, Light
 from tests import naive
 from tests.displacement.features import features
-from tests.displacement.strategies import Case, cases
+from tests.displacement.strategies import EYES, Case, cases
 from tests.naive import displacement as twin
 
 Arrays = dict[str, NDArray[np.generic]]
 
-SCENES = 200
+SCENES = 300
 
 seen: Counter[str] = Counter()
-"""In how many of the drawn scenes each feature occurred; "scenes" counts them all."""
+"""In how many of the drawn scenes each feature occurred; "scenes" counts them all. No scene counts twice."""
+
+frames: set[bytes] = set()
+"""Digests of the scenes in `seen`."""
 
 LEAST = {
-    "out: something shown": 0.75 * SCENES,
+    "out: something shown": 0.6 * SCENES,
     "out: hit protruded": 0.3 * SCENES,
-    "out: hit relief": 0.08 * SCENES,
+    "out: hit relief": 0.05 * SCENES,
+    "in: several polygons": 0.3 * SCENES,
 }
 """Scenes that must show a feature, where the usual `FEW` are not enough."""
 
@@ -92,15 +99,53 @@ def check_without_stages(scene: Scene, params: Params, frame: Frame) -> None:
 # --- Drawn scenes ----------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=SCENES, derandomize=True, deadline=None, database=None, suppress_health_check=list(HealthCheck))
-@given(case=cases())
-def test_drawn_scenes_agree(case: Case) -> None:
+REGIONS = sorted(EYES)
+
+
+def digest(arrays: Arrays) -> bytes:
+    """Names a frame, to tell new ones from those already seen."""
+    return hashlib.sha256(b"".join(array.tobytes() for array in arrays.values())).digest()
+
+
+def agree(case: Case) -> None:
+    """Compare a drawn scene, and count its features if it is a new one."""
     frame = check_agreement(case.scene, case.params)
     check_without_stages(case.scene, case.params, frame)
-    found = features(case.scene, case.params, frame)
-    for feature in sorted(found):
-        event(feature)
-    seen.update(["scenes", *found])
+    frames.add(digest(arrays_of(frame)))
+    if len(frames) > seen["scenes"]:
+        seen.update(["scenes", *features(case.scene, case.params, frame)])
+
+
+@pytest.fixture
+def one_thread() -> Iterator[None]:
+    """Pictures of a few hundred pixels are slower on several threads, much slower where others want the cores too."""
+    before = numba.get_num_threads()
+    numba.set_num_threads(1)
+    yield
+    numba.set_num_threads(before)
+
+
+def run_scene(number: int) -> None:
+    """Draw the simplest scene and a random one, with the eye in a region of its own, and compare both.
+
+    Each scene is a run of Hypothesis of its own: within a run it derives five examples from each that it draws, by
+    copying numbers about, and most come out as the same picture. `Phase.shrink` is left out to fail fast: add it to
+    find the smallest scene that fails.
+    """
+    chosen = settings(
+        max_examples=2,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    seed(number)(chosen(given(case=cases(REGIONS[number % len(REGIONS)]))(agree)))()
+
+
+@pytest.mark.parametrize("number", range(SCENES))
+def test_drawn_scene_agrees(number: int, one_thread: None) -> None:
+    run_scene(number)
 
 
 EXPECTED = """
@@ -131,10 +176,11 @@ def expected_features() -> list[str]:
     return [f"{prefix}: {name}" for prefix, names in rows for name in names.split(" | ")]
 
 
-def test_drawn_scenes_cover_every_feature() -> None:
+def test_drawn_scenes_cover_every_feature(one_thread: None) -> None:
     if not seen:  # this test was chosen alone
-        test_drawn_scenes_agree()
-    assert seen["scenes"] >= SCENES
+        for number in range(SCENES):
+            run_scene(number)
+    assert seen["scenes"] >= SCENES, "Hypothesis drew some scenes twice"
     rare = {name: seen[name] for name in expected_features() if seen[name] < LEAST.get(name, FEW)}
     assert not rare, f"of {seen['scenes']} scenes too few show: {rare}"
 
