@@ -233,7 +233,7 @@ def up_for(forward: Array, wanted: Array) -> Array:
 def planes(draw: DrawFn, distance: float) -> tuple[float, float]:
     """Near and far plane: mostly around everything, else cutting the volume, or nearly at the eye itself."""
     near = draw(st.sampled_from([0.02, 0.02, 0.02, 0.5, 0.8, 1e-7, 1e-7])) * distance * draw(real(0.5, 1.2))
-    return near, near + distance * draw(st.sampled_from([30.0, 30.0, 30.0, 1.0, 0.6]))
+    return near, near + distance * draw(st.sampled_from([30.0, 30.0, 30.0, 30.0, 1.0, 1.0, 0.6]))
 
 
 def calibrated(seen: Camera, skew: float, mirrored: bool) -> Camera:

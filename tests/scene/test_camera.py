@@ -48,7 +48,7 @@ def well_posed(eye: Array, target: Array, up: Array) -> bool:
 def test_the_corners_of_the_frustum_are_the_corners_of_the_picture(
     eye: Array, target: Array, up: Array, fov: float, near: float, ratio: float
 ) -> None:
-    """Depth 0 on the near plane, 1 on the far plane. Rounding: 1e-12 for positions, 1e-10 for the wide angles' pixels."""
+    """Depth 0 on the near plane, 1 on the far plane. Positions are rounded to 1e-15, seen from a distance of `near`."""
     assume(well_posed(eye, target, up))
     far = near * ratio
     camera = Camera.look_at(eye=eye, target=target, up=up, vertical_fov=fov, near=near, far=far, width=320, height=200)
