@@ -84,6 +84,8 @@ class Hits(NamedTuple):
 class Shades(NamedTuple):
     """Stage shade; channels in rows: (3, F)."""
 
+    slope: Floats
+    """(2, F): gradient of the height map."""
     color: Floats
     albedo: Floats
     normal: Floats
@@ -120,6 +122,13 @@ def store(wave, array, first):
 
 
 @device
+def store_indices(wave, array, first):
+    """The same for indices that the wave holds as floats."""
+    for lane in range(LANES):
+        array[first + lane] = np.int32(wave[lane])
+
+
+@device
 def over_polygon(fragments, i):
     """Whether the fragment's point lies on the polygon itself: such a ray always hits something."""
     u, v, h = fragments.patch[0, i], fragments.patch[1, i], fragments.patch[2, i]
@@ -134,9 +143,12 @@ def padded(count):
 
 @device
 def fragments_for(count):
-    """Fragments for a band, zeros: what a wave reads past the end is harmless."""
+    """Fragments for a band; those that only a wave's rest reads are zero, which is harmless."""
     size = padded(count)
-    return Fragments(np.zeros(size, np.int64), np.zeros(size, np.int32), np.zeros((3, size)), np.zeros(size))
+    fragments = Fragments(np.empty(size, np.int64), np.empty(size, np.int32), np.empty((3, size)), np.empty(size))
+    for i in range(count, size):
+        fragments.patch[0, i] = fragments.patch[1, i] = fragments.patch[2, i] = 0.0
+    return fragments
 
 
 @device
@@ -170,6 +182,7 @@ def shades_for(count):
     """Shades for a band."""
     size = padded(count)
     return Shades(
+        np.empty((2, size)),
         np.empty((3, size)),
         np.empty((3, size)),
         np.empty((3, size)),

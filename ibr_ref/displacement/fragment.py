@@ -18,9 +18,16 @@ from ibr_ref.displacement.margins import binary_margins, linear_border, linear_m
 from ibr_ref.displacement.maxima import Maxima
 from ibr_ref.displacement.rays import paper_rays, volume_rays
 from ibr_ref.displacement.relief import relief_search, texture_search
-from ibr_ref.displacement.resolve import depth_test, project_hits, write_color, write_shades, write_stages
+from ibr_ref.displacement.resolve import (
+    depth_test,
+    noted_depth_test,
+    project_hits,
+    write_color,
+    write_shades,
+    write_stages,
+)
 from ibr_ref.displacement.self_shadow import self_shadow
-from ibr_ref.displacement.shade import albedos, facades, height_normals, light_hits, mapped_normals
+from ibr_ref.displacement.shade import albedos, facades, height_normals, light_hits, mapped_normals, slopes
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, fill_depth, fill_varyings
 
@@ -114,16 +121,18 @@ def search(repeat, fragments, count, constants, settings, maps, hits):
 def shade(repeat, hits, count, constants, settings, maps, shades):
     """Stage shade: colours of all hits."""
     texels, columns, rows = maps.height
-    if maps.normal.texels.size > 0:
+    has_normals, has_facade = maps.normal.texels.size > 0, maps.facade.texels.size > 0
+    if has_facade or not has_normals:
+        slopes(repeat, hits, count, texels, columns, rows, shades.slope)
+    if has_normals:
         mapped_normals(
             repeat, hits, count, maps.normal.texels, maps.normal.columns, maps.normal.rows, constants, shades.normal
         )
     else:
-        height_normals(repeat, hits, count, texels, columns, rows, constants, shades.normal)
+        height_normals(hits, count, constants, shades.slope, shades.normal)
     albedos(repeat, hits, count, maps.color.texels, maps.color.columns, maps.color.rows, shades.albedo)
-    if maps.facade.texels.size > 0:
-        facade, facade_columns, facade_rows = maps.facade
-        facades(repeat, hits, count, texels, columns, rows, facade, facade_columns, facade_rows, constants, shades)
+    if has_facade:
+        facades(hits, count, maps.facade.texels, maps.facade.columns, maps.facade.rows, constants, shades)
     if settings.shadow_steps > 0:
         floor = -1.0 if settings.method == RELIEF else 0.0
         self_shadow(repeat, hits, count, texels, columns, rows, constants.light, floor, settings, shades)
@@ -142,7 +151,10 @@ def _draw_band(repeat, triangles, faces, constants, settings, maps, patch_id, wi
     project_hits(fragments, count, constants, settings, hits)
     if settings.method == PROTRUDED or settings.method == EXACT:
         mark_steep(count, settings, hits)
-    shown = depth_test(fragments, hits, count, settings, target, verdicts)
+    if settings.keep:
+        shown = noted_depth_test(fragments, hits, count, target, verdicts)
+    else:
+        shown = depth_test(fragments, hits, count, target, verdicts)
     if shown > 0 or settings.keep:
         shade(repeat, hits, count, constants, settings, maps, shades)
     write_color(fragments, shades, count, verdicts, target)

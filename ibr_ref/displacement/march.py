@@ -2,14 +2,15 @@
 
 All tests are on the lattice t = k/K, K = N 2^M. Fragments run in waves: each step of the search runs over all LANES in
 an inner loop, with masks instead of branches, as a GPU does; LLVM turns those loops into SIMD gathers. It only does so
-where the lanes' arrays are allocated in the same function: it must see that stores to them cannot change the texture.
+where the lanes' arrays are allocated in the same function: it must see that stores to them cannot change the texture. Where
+to sample, the fetch, and what follows from it are loops of their own: one loop for all takes half as long again.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import index_lanes, lanes, over_polygon, store
+from ibr_ref.displacement.buffers import lanes, load, over_polygon, store, store_indices
 from ibr_ref.displacement.maxima import highest
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch, lerp
@@ -19,12 +20,12 @@ _VOLUME_SLACK = 1e-9  # rounding of h = B_h + (C_h - B_h) t; the paper's h = 1 -
 
 
 @device
-def _bounds(values, steps):
-    """Smallest and largest value of a wave at t = 0, and the same at t = 1: low0, high0, low1, high1."""
-    low0 = high0 = values[0]
-    low1 = high1 = values[0] + steps[0]
-    for lane in range(1, LANES):
-        start = values[lane]
+def _bounds(values, steps, stop):
+    """Smallest and largest value of a wave's open lanes at t = 0, and the same at t = 1: low0, high0, low1, high1."""
+    low0 = low1 = np.inf
+    high0 = high1 = -np.inf
+    for lane in range(LANES):
+        start = values[lane] if stop[lane] < 0 else np.nan  # a NaN passes no comparison
         end = start + steps[lane]
         low0 = start if start < low0 else low0
         high0 = start if start > high0 else high0
@@ -54,16 +55,27 @@ def clearance(repeat, maxima, bounded, bounds_u, bounds_v, bounds_h, t0, t1):
 
 
 @device
-def wave_bounds(u, v, h, du, dv, dh, volume):
-    """Bounds of u, v and h over a wave (paper: h is 1 - t in every lane)."""
+def wave_bounds(u, v, h, du, dv, dh, stop, volume):
+    """Bounds of u, v and h over the lanes that have not stopped, stop < 0 (paper: h is 1 - t in every lane)."""
     if volume:
-        low0, high0, low1, high1 = _bounds(h, dh)
+        low0, high0, low1, high1 = _bounds(h, dh, stop)
         return (
-            _bounds(u, du),
-            _bounds(v, dv),
+            _bounds(u, du, stop),
+            _bounds(v, dv, stop),
             (low0 - _VOLUME_SLACK, high0, low1 - _VOLUME_SLACK, high1),
         )
-    return _bounds(u, du), _bounds(v, dv), (1.0, 1.0, 0.0, 0.0)
+    return _bounds(u, du, stop), _bounds(v, dv, stop), (1.0, 1.0, 0.0, 0.0)
+
+
+@device
+def _first_step(maxima, settings):
+    """The first step of the paper's interval that is not above all heights."""
+    total = np.float64(settings.linear_steps << settings.binary_steps)
+    stride = np.float64(1 << settings.binary_steps)
+    step = 0
+    while not settings.volume and step <= settings.linear_steps and 1.0 - step * stride / total >= maxima.everywhere:
+        step += 1
+    return step
 
 
 @device
@@ -76,16 +88,17 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
     total = np.float64(steps << settings.binary_steps)
     stride = np.float64(1 << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    u, v, h, du, dv, dh, sample, height = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
-    stop = index_lanes()
+    u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    p_u, p_v, sample, stop = lanes(), lanes(), lanes(), lanes()
+    first_step = _first_step(maxima, settings)
     for first in range(0, count, LANES):
         for lane in range(LANES):
             i = first + lane
             u[lane], v[lane], h[lane] = rays.u[i], rays.v[i], rays.h[i]
             du[lane], dv[lane], dh[lane] = rays.du[i], rays.dv[i], rays.dh[i]
-            stop[lane] = -1
-        bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, settings.volume)
-        step, leap = 0, _LEAP // 2
+            stop[lane] = -1.0
+        bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, stop, settings.volume)
+        step, leap, stopped = first_step, _LEAP, 0.0
         while step <= steps:
             leap = min(leap, steps - step + 1)
             t0, t1 = step * stride / total, (step + leap - 1) * stride / total
@@ -97,57 +110,68 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
                 leap //= 2
                 continue
             for lane in range(LANES):
-                p_u = u[lane] + du[lane] * t0
-                p_v = v[lane] + dv[lane] * t0
-                inside = (p_u >= low) & (p_u <= high) & (p_v >= low) & (p_v <= high)
-                texel = fetch(texels, columns, rows, repeat, p_u, p_v)
-                sample[lane] = texel if inside else 0.0
-                height[lane] = h[lane] + dh[lane] * t0
-            stopped = np.int32(0)
+                p_u[lane] = u[lane] + du[lane] * t0
+                p_v[lane] = v[lane] + dv[lane] * t0
             for lane in range(LANES):
-                stop[lane] = step if (height[lane] < sample[lane]) & (stop[lane] < 0) else stop[lane]
-                stopped += np.int32(1) if stop[lane] >= 0 else np.int32(0)
+                sample[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
+            before, stopped, here = stopped, 0.0, np.float64(step)
+            for lane in range(LANES):
+                inside = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
+                below = h[lane] + dh[lane] * t0 < sample[lane]
+                stop[lane] = here if below & inside & (stop[lane] < 0.0) else stop[lane]
+            for lane in range(LANES):
+                stopped += 1.0 if stop[lane] >= 0.0 else 0.0
             if stopped == LANES:
                 break
+            if stopped > before:  # the lanes that are left may have a clear way
+                bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, stop, settings.volume)
             step += 1
-        store(stop, linear_index, first)
+        store_indices(stop, linear_index, first)
 
 
 @device
 def binary_search(repeat, rays, count, texels, columns, rows, settings, linear_index, hit_index):
-    """Lattice index of each hit: M halvings of the last linear step; -1 where the linear search found nothing."""
-    stride = np.int32(1 << settings.binary_steps)
+    """Lattice index of each hit: M halvings of the last linear step; -1 where the linear search found nothing.
+
+    Indices are floats here, which hold them exactly: a wave of one type needs no conversions.
+    """
+    stride = np.float64(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    u, v, h, du, dv, dh, sample, height = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
-    outside, inside, middle = index_lanes(), index_lanes(), index_lanes()
+    u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    p_u, p_v, p_h, sample = lanes(), lanes(), lanes(), lanes()
+    outside, inside, stop = lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
-        searching = np.int32(0)
+        searching = 0.0
         for lane in range(LANES):
-            i = first + lane
-            u[lane], v[lane], h[lane] = rays.u[i], rays.v[i], rays.h[i]
-            du[lane], dv[lane], dh[lane] = rays.du[i], rays.dv[i], rays.dh[i]
-            stop = linear_index[i]
-            inside[lane] = stop * stride if stop >= 0 else -1
-            outside[lane] = inside[lane] - stride if stop > 0 else inside[lane]
-            searching += np.int32(1) if stop > 0 else np.int32(0)
-        for _ in range(settings.binary_steps if searching > 0 else 0):
+            stop[lane] = np.float64(linear_index[first + lane])
+            inside[lane] = stop[lane] * stride if stop[lane] >= 0.0 else -1.0
+            outside[lane] = inside[lane] - stride if stop[lane] > 0.0 else inside[lane]
+        for lane in range(LANES):
+            searching += 1.0 if stop[lane] > 0.0 else 0.0
+        if searching > 0.0:
+            load(rays.u, first, u)
+            load(rays.v, first, v)
+            load(rays.h, first, h)
+            load(rays.du, first, du)
+            load(rays.dv, first, dv)
+            load(rays.dh, first, dh)
+        for _ in range(settings.binary_steps if searching > 0.0 else 0):
             for lane in range(LANES):
-                middle[lane] = (outside[lane] + inside[lane]) >> 1
+                t = (outside[lane] + inside[lane]) * 0.5 / total
+                p_u[lane] = u[lane] + du[lane] * t
+                p_v[lane] = v[lane] + dv[lane] * t
+                p_h[lane] = h[lane] + dh[lane] * t
             for lane in range(LANES):
-                t = middle[lane] / total
-                p_u = u[lane] + du[lane] * t
-                p_v = v[lane] + dv[lane] * t
-                covered = (p_u >= low) & (p_u <= high) & (p_v >= low) & (p_v <= high)
-                texel = fetch(texels, columns, rows, repeat, p_u, p_v)
-                sample[lane] = texel if covered else 0.0
-                height[lane] = h[lane] + dh[lane] * t
+                sample[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
             for lane in range(LANES):
-                below = height[lane] < sample[lane]
-                open_ = outside[lane] < inside[lane]
-                inside[lane] = middle[lane] if below & open_ else inside[lane]
-                outside[lane] = outside[lane] if below | (not open_) else middle[lane]
-        store(inside, hit_index, first)
+                covered = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
+                middle = (outside[lane] + inside[lane]) * 0.5
+                below = (p_h[lane] < sample[lane]) & covered
+                searched = stop[lane] > 0.0
+                inside[lane] = middle if below & searched else inside[lane]
+                outside[lane] = outside[lane] if below | (not searched) else middle
+        store_indices(inside, hit_index, first)
 
 
 @device
@@ -156,22 +180,25 @@ def heights_before(repeat, rays, count, texels, columns, rows, settings, linear_
     stride = np.float64(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    before = lanes()
+    p_u, p_v, stop, before = lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
-        searched = np.int32(0)
+        searched = 0.0
         for lane in range(LANES):
-            searched += np.int32(1) if linear_index[first + lane] > 0 else np.int32(0)
-        if searched == 0:  # nothing to read: the heights stay 0
+            stop[lane] = np.float64(linear_index[first + lane])
+        for lane in range(LANES):
+            searched += 1.0 if stop[lane] > 0.0 else 0.0
+        if searched == 0.0:  # nothing to read: the heights stay 0
             continue
         for lane in range(LANES):
             i = first + lane
-            stop = linear_index[i]
-            t = (stop - 1) * stride / total if stop > 0 else 0.0
-            p_u = rays.u[i] + rays.du[i] * t
-            p_v = rays.v[i] + rays.dv[i] * t
-            inside = (p_u >= low) & (p_u <= high) & (p_v >= low) & (p_v <= high) & (stop > 0)
-            texel = fetch(texels, columns, rows, repeat, p_u, p_v)
-            before[lane] = texel if inside else 0.0
+            t = (stop[lane] - 1.0) * stride / total
+            p_u[lane] = rays.u[i] + rays.du[i] * t
+            p_v[lane] = rays.v[i] + rays.dv[i] * t
+        for lane in range(LANES):
+            before[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
+        for lane in range(LANES):
+            inside = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
+            before[lane] = before[lane] if inside & (stop[lane] > 0.0) else 0.0
         store(before, height_before, first)
 
 
@@ -181,29 +208,31 @@ def place_hits(fragments, rays, count, settings, hits):
 
     No stop, or a hit at k = K: a fragment over the polygon hits the polygon itself, any other is discarded.
     """
-    end = np.int32(settings.linear_steps << settings.binary_steps)
-    total = np.float64(end)
-    u, v, h, before = lanes(), lanes(), lanes(), lanes()
-    linear, index = index_lanes(), index_lanes()
+    end = np.float64(settings.linear_steps << settings.binary_steps)
+    u, v, h, t = lanes(), lanes(), lanes(), lanes()
+    index, stopped = lanes(), lanes()
     for first in range(0, count, LANES):
         for lane in range(LANES):
+            index[lane] = np.float64(hits.hit_index[first + lane])
+        for lane in range(LANES):
+            hit = (index[lane] >= 0.0) & (index[lane] < end)
+            stopped[lane] = 1.0 if hit else 0.0
+            t[lane] = index[lane] / end if hit else 1.0
+        for lane in range(LANES):
             i = first + lane
-            k = hits.hit_index[i]
-            stopped = (k >= 0) & (k < end)
-            ground = over_polygon(fragments, i) & (rays.h[i] <= 1.0) & (not stopped)
-            t = k / total if stopped else 1.0
-            u[lane] = rays.u[i] + rays.du[i] * t
-            v[lane] = rays.v[i] + rays.dv[i] * t
-            h[lane] = rays.h[i] + rays.dh[i] * t if stopped else 0.0
-            before[lane] = hits.height_before[i] if stopped else 0.0
-            linear[lane] = hits.linear_index[i] if stopped else -1
-            index[lane] = k if stopped else (end if ground else -1)
+            u[lane] = rays.u[i] + rays.du[i] * t[lane]
+            v[lane] = rays.v[i] + rays.dv[i] * t[lane]
+            h[lane] = rays.h[i] + rays.dh[i] * t[lane] if stopped[lane] > 0.0 else 0.0
         store(u, hits.u, first)
         store(v, hits.v, first)
         store(h, hits.h, first)
-        store(before, hits.height_before, first)
-        store(linear, hits.linear_index, first)
-        store(index, hits.hit_index, first)
+        for lane in range(LANES):
+            i = first + lane
+            if stopped[lane] == 0.0:
+                ground = over_polygon(fragments, i) & (rays.h[i] <= 1.0)
+                hits.hit_index[i] = np.int32(end) if ground else np.int32(-1)
+                hits.linear_index[i] = -1
+                hits.height_before[i] = 0.0
 
 
 @device

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import index_lanes, lanes, load, store
+from ibr_ref.displacement.buffers import lanes, load, store
 from ibr_ref.displacement.march import clearance, wave_bounds
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch
@@ -31,107 +31,110 @@ def _load(rays, first, u, v, h, du, dv, dh):
 
 
 @device
+def _last_steps(rays, linear_index, first, steps, last):
+    """The last step that each lane of a wave was tested at, -1 where the ray does not go down; the largest of them."""
+    largest = -1
+    for lane in range(LANES):
+        stop = linear_index[first + lane]
+        step = (stop if stop >= 0 else steps) if rays.h[first + lane] <= 1.0 else -1
+        last[lane] = np.float64(step)
+        largest = max(largest, step)
+    return largest
+
+
+@device
+def _farthest(closest, compared):
+    """The largest margin of a wave so far: what stays farther away than this changes none."""
+    farthest = 0.0
+    for lane in range(LANES):
+        farthest = closest[lane] if (compared[lane] >= 0.0) & (closest[lane] > farthest) else farthest
+    return farthest
+
+
+@device
 def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings, linear_index, margin):
     """Smallest |h - H| over the comparisons of the linear search, without those at h = 0 or h = 1."""
     steps = settings.linear_steps
     total = np.float64(steps << settings.binary_steps)
     stride = np.float64(1 << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    u, v, h, du, dv, dh, sample, height, closest = (
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-    )
-    compared = index_lanes()
+    u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    p_u, p_v, sample, closest = lanes(), lanes(), lanes(), lanes()
+    compared, never = lanes(), lanes()
+    for lane in range(LANES):
+        never[lane] = -1.0
     for first in range(0, count, LANES):
         _load(rays, first, u, v, h, du, dv, dh)
-        last_step, farthest = 0, 0.0
-        for lane in range(LANES):
-            stop = linear_index[first + lane]
-            stop = stop if stop >= 0 else steps
-            compared[lane] = stop if h[lane] <= 1.0 else -1  # a ray that does not go down was never searched
-            last_step = max(last_step, compared[lane])
-            closest[lane] = margin[first + lane]
-            farthest = max(farthest, closest[lane] if compared[lane] >= 0 else 0.0)
-        bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, settings.volume)
+        load(margin, first, closest)
+        last_step = _last_steps(rays, linear_index, first, steps, compared)
         if not settings.volume:
             last_step = min(last_step, steps - 1)  # the last comparison is at h = 0
+        farthest = _farthest(closest, compared)
+        bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, never, settings.volume)
         for step in range(last_step, -1, -1):
-            t = step * stride / total
+            t, here = step * stride / total, np.float64(step)
             if clearance(repeat, maxima, settings.bounded, bounds_u, bounds_v, bounds_h, t, t) >= farthest:
                 continue
             for lane in range(LANES):
-                p_u = u[lane] + du[lane] * t
-                p_v = v[lane] + dv[lane] * t
+                p_u[lane] = u[lane] + du[lane] * t
+                p_v[lane] = v[lane] + dv[lane] * t
+            for lane in range(LANES):
+                sample[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
+            for lane in range(LANES):
                 p_h = h[lane] + dh[lane] * t
-                inside = (p_u >= low) & (p_u <= high) & (p_v >= low) & (p_v <= high) & (p_h != 0.0) & (p_h != 1.0)
-                distance = abs(p_h - fetch(texels, columns, rows, repeat, p_u, p_v))
-                sample[lane] = distance if inside else np.inf
-            farthest = 0.0
-            for lane in range(LANES):
-                nearer = (step <= compared[lane]) & (sample[lane] < closest[lane])
-                closest[lane] = sample[lane] if nearer else closest[lane]
-                height[lane] = closest[lane] if compared[lane] >= 0 else 0.0
-            for lane in range(LANES):
-                farthest = height[lane] if height[lane] > farthest else farthest
+                distance = abs(p_h - sample[lane])
+                inside = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
+                counts = inside & (p_h != 0.0) & (p_h != 1.0) & (here <= compared[lane])
+                closest[lane] = distance if counts & (distance < closest[lane]) else closest[lane]
+            farthest = _farthest(closest, compared)
         store(closest, margin, first)
 
 
 @device
 def binary_margins(repeat, rays, count, texels, columns, rows, settings, linear_index, hit_index, margin, border):
     """The same over the comparisons of the binary search, replayed from its result; `border` as in `linear_border`."""
-    stride = np.int32(1 << settings.binary_steps)
+    stride = np.float64(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
-    u, v, h, du, dv, dh, sample, edge, closest, nearest = (
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-        lanes(),
-    )
-    outside, inside, middle, index = index_lanes(), index_lanes(), index_lanes(), index_lanes()
+    u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    p_u, p_v, p_h, sample = lanes(), lanes(), lanes(), lanes()
+    outside, inside, stop, index = lanes(), lanes(), lanes(), lanes()
+    closest, nearest = lanes(), lanes()
     for first in range(0, count, LANES):
-        _load(rays, first, u, v, h, du, dv, dh)
-        searching = np.int32(0)
+        searching = 0.0
         for lane in range(LANES):
-            stop = linear_index[first + lane]
-            index[lane] = hit_index[first + lane]
-            inside[lane] = stop * stride if stop > 0 else 0
-            outside[lane] = inside[lane] - stride if stop > 0 else 0
-            closest[lane] = margin[first + lane]
-            nearest[lane] = border[first + lane]
-            searching += np.int32(1) if stop > 0 else np.int32(0)
-        for _ in range(settings.binary_steps if searching > 0 else 0):
+            stop[lane] = np.float64(linear_index[first + lane])
+            index[lane] = np.float64(hit_index[first + lane])
+            inside[lane] = stop[lane] * stride
+            outside[lane] = inside[lane] - stride
+        for lane in range(LANES):
+            searching += 1.0 if stop[lane] > 0.0 else 0.0
+        if searching == 0.0:
+            continue
+        _load(rays, first, u, v, h, du, dv, dh)
+        load(margin, first, closest)
+        load(border, first, nearest)
+        for _ in range(settings.binary_steps):
             for lane in range(LANES):
-                middle[lane] = (outside[lane] + inside[lane]) >> 1
+                t = (outside[lane] + inside[lane]) * 0.5 / total
+                p_u[lane] = u[lane] + du[lane] * t
+                p_v[lane] = v[lane] + dv[lane] * t
+                p_h[lane] = h[lane] + dh[lane] * t
             for lane in range(LANES):
-                t = middle[lane] / total
-                p_u = u[lane] + du[lane] * t
-                p_v = v[lane] + dv[lane] * t
-                p_h = h[lane] + dh[lane] * t
-                covered = (p_u >= low) & (p_u <= high) & (p_v >= low) & (p_v <= high) & (p_h != 0.0) & (p_h != 1.0)
-                distance = abs(p_h - fetch(texels, columns, rows, repeat, p_u, p_v))
-                sample[lane] = distance if covered else np.inf
-                edge[lane] = _distance_to_border(p_u, p_v)
+                sample[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
             for lane in range(LANES):
-                searched = outside[lane] < inside[lane]
-                closest[lane] = sample[lane] if searched & (sample[lane] < closest[lane]) else closest[lane]
-                nearest[lane] = edge[lane] if searched & (edge[lane] < nearest[lane]) else nearest[lane]
-                below = middle[lane] >= index[lane]
-                outside[lane] = outside[lane] if below | (not searched) else middle[lane]
-                inside[lane] = middle[lane] if below & searched else inside[lane]
+                distance = abs(p_h[lane] - sample[lane])
+                covered = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
+                counts = covered & (p_h[lane] != 0.0) & (p_h[lane] != 1.0) & (stop[lane] > 0.0)
+                closest[lane] = distance if counts & (distance < closest[lane]) else closest[lane]
+            for lane in range(LANES):
+                edge = _distance_to_border(p_u[lane], p_v[lane])
+                nearest[lane] = edge if (stop[lane] > 0.0) & (edge < nearest[lane]) else nearest[lane]
+            for lane in range(LANES):
+                middle = (outside[lane] + inside[lane]) * 0.5
+                below = middle >= index[lane]
+                outside[lane] = outside[lane] if below else middle
+                inside[lane] = middle if below else inside[lane]
         store(closest, margin, first)
         if settings.bounded:
             store(nearest, border, first)
@@ -143,20 +146,19 @@ def linear_border(rays, count, settings, linear_index, border):
     steps = settings.linear_steps
     total = np.float64(steps << settings.binary_steps)
     stride = np.float64(1 << settings.binary_steps)
-    u, v, h, du, dv, dh, nearest = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
-    tested = index_lanes()
+    u, v, du, dv = lanes(), lanes(), lanes(), lanes()
+    nearest, tested = lanes(), lanes()
     for first in range(0, count, LANES):
-        _load(rays, first, u, v, h, du, dv, dh)
-        last_step = 0
+        load(rays.u, first, u)
+        load(rays.v, first, v)
+        load(rays.du, first, du)
+        load(rays.dv, first, dv)
+        last_step = _last_steps(rays, linear_index, first, steps, tested)
         for lane in range(LANES):
-            stop = linear_index[first + lane]
-            stop = stop if stop >= 0 else steps
-            tested[lane] = stop if h[lane] <= 1.0 else -1
-            last_step = max(last_step, tested[lane])
             nearest[lane] = np.inf
         for step in range(last_step + 1):
-            t = step * stride / total
+            t, here = step * stride / total, np.float64(step)
             for lane in range(LANES):
                 edge = _distance_to_border(u[lane] + du[lane] * t, v[lane] + dv[lane] * t)
-                nearest[lane] = edge if (step <= tested[lane]) & (edge < nearest[lane]) else nearest[lane]
+                nearest[lane] = edge if (here <= tested[lane]) & (edge < nearest[lane]) else nearest[lane]
         store(nearest, border, first)

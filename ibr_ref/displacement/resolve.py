@@ -159,25 +159,37 @@ SHOWN, NOTED, HIDDEN = 2, 1, 0
 
 
 @device
-def depth_test(fragments, hits, count, settings, target, verdicts):
+def depth_test(fragments, hits, count, target, verdicts):
     """Depth test LESS in submission order; how many fragments passed. Writes the depth."""
+    shown = 0
+    for i in range(count):
+        pixel, depth = fragments.pixel[i], hits.depth[i]
+        passed = hits.hit_index[i] >= 0 and passes(depth, target.depth[pixel])
+        verdicts[i] = SHOWN if passed else HIDDEN
+        if passed:
+            target.depth[pixel] = depth
+            shown += 1
+    return shown
+
+
+@device
+def noted_depth_test(fragments, hits, count, target, verdicts):
+    """The same, and what the stages need: first fragments on their pixels, and the depth behind the one that is shown."""
     shown = 0
     for i in range(count):
         pixel, depth = fragments.pixel[i], hits.depth[i]
         kept = hits.hit_index[i] >= 0
         before = target.depth[pixel]
-        if settings.keep and kept:
-            behind = before if depth < before and before < 1.0 else depth
-            if not (depth < before and before >= 1.0):
-                target.second[pixel] = min(target.second[pixel], behind)
-        verdicts[i] = HIDDEN
-        if kept and passes(depth, before):
+        passed = kept and passes(depth, before)
+        if passed and before < 1.0:  # the one shown so far lies behind
+            target.second[pixel] = min(target.second[pixel], before)
+        elif kept and not passed:
+            target.second[pixel] = min(target.second[pixel], depth)
+        verdicts[i] = SHOWN if passed else (NOTED if target.face[pixel] < 0 else HIDDEN)
+        if passed:
             target.depth[pixel] = depth
-            verdicts[i] = SHOWN
             shown += 1
-        elif settings.keep and target.face[pixel] < 0:
-            verdicts[i] = NOTED
-        if settings.keep and verdicts[i] != HIDDEN:
+        if verdicts[i] != HIDDEN:
             target.face[pixel] = fragments.face[i]
     return shown
 

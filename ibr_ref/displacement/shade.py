@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import lanes, store
+from ibr_ref.displacement.buffers import lanes, load, store
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch, footprint, mix_channel
 
@@ -23,6 +23,15 @@ def _unit(x, y, z):
 
 
 @device
+def nothing_kept(hits, first):
+    """Whether a wave holds discarded fragments alone: it is not shaded."""
+    kept = np.int32(0)
+    for lane in range(LANES):
+        kept += np.int32(1) if hits.hit_index[first + lane] >= 0 else np.int32(0)
+    return kept == 0
+
+
+@device
 def _slope(ahead, behind, size):
     """Central difference of heights, per unit of the texture coordinate."""
     difference = ahead - behind
@@ -30,36 +39,44 @@ def _slope(ahead, behind, size):
 
 
 @device
-def gradient(repeat, texels, columns, rows, u, v):
-    """(g_u, g_v) of the height map at (u, v), from one texel to either side."""
+def slopes(repeat, hits, count, texels, columns, rows, slope):
+    """(g_u, g_v), the gradient of the height map at the hits, from one texel to either side."""
     step_u, step_v = 1.0 / columns, 1.0 / rows
-    g_u = _slope(
-        fetch(texels, columns, rows, repeat, u + step_u, v),
-        fetch(texels, columns, rows, repeat, u - step_u, v),
-        columns,
-    )
-    g_v = _slope(
-        fetch(texels, columns, rows, repeat, u, v + step_v), fetch(texels, columns, rows, repeat, u, v - step_v), rows
-    )
-    return g_u, g_v
+    u, v, ahead, g_u, g_v = lanes(), lanes(), lanes(), lanes(), lanes()
+    for first in range(0, count, LANES):
+        if nothing_kept(hits, first):
+            continue
+        load(hits.u, first, u)
+        load(hits.v, first, v)
+        for lane in range(LANES):
+            ahead[lane] = fetch(texels, columns, rows, repeat, u[lane] + step_u, v[lane])
+        for lane in range(LANES):
+            g_u[lane] = _slope(ahead[lane], fetch(texels, columns, rows, repeat, u[lane] - step_u, v[lane]), columns)
+        for lane in range(LANES):
+            ahead[lane] = fetch(texels, columns, rows, repeat, u[lane], v[lane] + step_v)
+        for lane in range(LANES):
+            g_v[lane] = _slope(ahead[lane], fetch(texels, columns, rows, repeat, u[lane], v[lane] - step_v), rows)
+        store(g_u, slope[0], first)
+        store(g_v, slope[1], first)
 
 
 @device
-def height_normals(repeat, hits, count, texels, columns, rows, constants, normal):
+def height_normals(hits, count, constants, slope, normal):
     """normalize(n - s (g_u U* + g_v V*)): the surface's own normal, where there is no normal map."""
     scale, across, n = constants.scale, constants.rows, constants.frame[2]
     ux, uy, uz = across[0, 0], across[0, 1], across[0, 2]
     vx, vy, vz = across[1, 0], across[1, 1], across[1, 2]
     n0, n1, n2 = n[0], n[1], n[2]
-    g_u, g_v, x, y, z = lanes(), lanes(), lanes(), lanes(), lanes()
+    x, y, z = lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
+        if nothing_kept(hits, first):
+            continue
         for lane in range(LANES):
-            g_u[lane], g_v[lane] = gradient(repeat, texels, columns, rows, hits.u[first + lane], hits.v[first + lane])
-        for lane in range(LANES):
+            g_u, g_v = slope[0, first + lane], slope[1, first + lane]
             x[lane], y[lane], z[lane] = _unit(
-                n0 - scale * (g_u[lane] * ux + g_v[lane] * vx),
-                n1 - scale * (g_u[lane] * uy + g_v[lane] * vy),
-                n2 - scale * (g_u[lane] * uz + g_v[lane] * vz),
+                n0 - scale * (g_u * ux + g_v * vx),
+                n1 - scale * (g_u * uy + g_v * vy),
+                n2 - scale * (g_u * uz + g_v * vz),
             )
         store(x, normal[0], first)
         store(y, normal[1], first)
@@ -76,6 +93,8 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
     x, y, z = lanes(), lanes(), lanes()
     r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
     for first in range(0, count, LANES):
+        if nothing_kept(hits, first):
+            continue
         for lane in range(LANES):
             i00, i10, i01, i11, fx, fy = footprint(hits.u[first + lane], hits.v[first + lane], columns, rows, repeat)
             m0 = 2.0 * mix_channel(texels, r, i00, i10, i01, i11, fx, fy) - 1.0
@@ -96,6 +115,8 @@ def albedos(repeat, hits, count, texels, columns, rows, albedo):
     red, green, blue = lanes(), lanes(), lanes()
     r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
     for first in range(0, count, LANES):
+        if nothing_kept(hits, first):
+            continue
         for lane in range(LANES):
             i00, i10, i01, i11, fx, fy = footprint(hits.u[first + lane], hits.v[first + lane], columns, rows, repeat)
             red[lane] = mix_channel(texels, r, i00, i10, i01, i11, fx, fy)
@@ -119,9 +140,8 @@ def _horizontal(constants, along_u, along_v):
 
 
 @device
-def _wall(repeat, texels, columns, rows, constants, u, v):
+def _wall(constants, g_u, g_v, u, v):
     """Normal of the wall at a steep hit, whether it faces u (else v), and the margin of that decision."""
-    g_u, g_v = gradient(repeat, texels, columns, rows, u, v)
     length_u, length_v = constants.lengths[0], constants.lengths[1]
     if g_u == 0.0 and g_v == 0.0:  # no slope to go by: the wall faces the eye
         d_u = constants.eye[0] - constants.eye[3] * u
@@ -139,24 +159,20 @@ def _wall(repeat, texels, columns, rows, constants, u, v):
 
 
 @device
-def facades(repeat, hits, count, texels, columns, rows, facade, facade_columns, facade_rows, constants, shades):
+def facades(hits, count, texels, columns, rows, constants, shades):
     """On steep hits: the facade tile as albedo and the wall's own normal (section 4.2). Few fragments: one by one."""
     for i in range(count):
         if not hits.steep[i]:
             continue
         u, v = hits.u[i], hits.v[i]
-        normal, faces_u, margin = _wall(repeat, texels, columns, rows, constants, u, v)
+        normal, faces_u, margin = _wall(constants, shades.slope[0, i], shades.slope[1, i], u, v)
         along = v * constants.lengths[1] if faces_u else u * constants.lengths[0]
         i00, i10, i01, i11, fx, fy = footprint(
-            along / constants.tile[0],
-            -hits.h[i] * constants.scale / constants.tile[1],
-            facade_columns,
-            facade_rows,
-            True,
+            along / constants.tile[0], -hits.h[i] * constants.scale / constants.tile[1], columns, rows, True
         )
         shades.axis_margin[i] = margin
         for channel in range(3):
-            shades.albedo[channel, i] = mix_channel(facade, np.uint32(channel), i00, i10, i01, i11, fx, fy)
+            shades.albedo[channel, i] = mix_channel(texels, np.uint32(channel), i00, i10, i01, i11, fx, fy)
             shades.normal[channel, i] = normal[channel]
 
 
@@ -201,6 +217,8 @@ def light_hits(hits, count, constants, shades):
     exponent = constants.exponent
     red, green, blue, facing = lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
+        if nothing_kept(hits, first):
+            continue
         for lane in range(LANES):
             i = first + lane
             u, v, h = hits.u[i], hits.v[i], hits.h[i]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.clip import clip_triangles
-from ibr_ref.pipeline.triangles import Triangles, columns_in_row, edges_in_row, fill_depth, fill_varying, set_up
+from ibr_ref.pipeline.triangles import Triangles, columns_in_row, edges_in_row, fill_depth, fill_varyings, set_up
 
 Point = tuple[int, int]
 
@@ -35,8 +35,7 @@ def _draw_row(xs, ys, zs, ws, varyings, rows, row, width, count, depth, out):
             for column in range(first, stop):
                 count[row, column] += 1
             fill_depth(edges, first, stop, zs[t], depth[row], first)
-            for k in range(varyings.shape[2]):
-                fill_varying(edges, first, stop, varyings[t, :, k], ws[t], out[k, row], first)
+            fill_varyings(edges, first, stop, varyings[t], ws[t], out[:, row], first)
 
 
 @kernel

@@ -171,11 +171,13 @@ def test_varyings_are_perspective_correct_to_the_last_bits(
 
 
 def test_a_varying_that_is_the_same_at_all_corners_is_the_same_everywhere() -> None:
-    """To 4 ulp; and where the corners have the same w, varyings are linear in the window."""
+    """To 4 ulp (0 and 1 exactly); and where the corners have the same w, varyings are linear in the window."""
     clip = [(-2.0, -2.0, 0.5, 1.0), (9.0, -2.0, 3.0, 4.0), (0.0, 30.0, 1.0, 9.0)]
-    drawing = draw(clip, [(0, 1, 2)], 64, 48, [[0.7, 1.0], [0.7, 1.0], [0.7, 1.0]])
+    drawing = draw(clip, [(0, 1, 2)], 64, 48, [[0.7, 1.0, 0.0]] * 3)
     inside = drawing.count == 1
     assert inside.any()
+    assert (drawing.varyings[1][inside] == 1.0).all()
+    assert (drawing.varyings[2][inside] == 0.0).all()
     np.testing.assert_allclose(drawing.varyings[0][inside], 0.7, rtol=4 * ULP)
     flat = draw(at_window([(0, 0), (8192, 0), (0, 8192)], SIZE), [(0, 1, 2)], SIZE, SIZE, [[0.0], [32.0], [0.0]])
     assert_array_equal(flat.varyings[0], np.broadcast_to(np.arange(SIZE) + 0.5, (SIZE, SIZE)))

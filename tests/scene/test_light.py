@@ -49,9 +49,9 @@ def test_the_error_names_the_field_and_what_was_found(field: str, value: Any, fo
 
 
 def test_neither_or_both_of_position_and_direction_are_rejected() -> None:
-    with pytest.raises(ValueError, match="neither of position and direction.*exactly one"):
+    with pytest.raises(ValueError, match=r"neither of position and direction.*exactly one"):
         Light()
-    with pytest.raises(ValueError, match="both of position and direction.*exactly one"):
+    with pytest.raises(ValueError, match=r"both of position and direction.*exactly one"):
         Light(position=(0, 0, 1), direction=(0, 0, 1))
 
 
