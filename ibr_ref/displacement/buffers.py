@@ -18,6 +18,41 @@ Ints = NDArray[np.int32]
 Bools = NDArray[np.bool_]
 
 
+class Uniforms(NamedTuple):
+    """Constants of one polygon's draw call."""
+
+    corner: Floats
+    """(3,) world."""
+    axes: Floats
+    """(3, 3): U, V and N3 as rows, world."""
+    rows: Floats
+    """(3, 3): the reciprocal basis as rows; the first two are U* and V*."""
+    frame: Floats
+    """(3, 3): U/|U|, n x U/|U| and n as rows: the frame of the normal map."""
+    lengths: Floats
+    """(2,): |U| and |V|."""
+    scale: float
+    """World units of h = 1."""
+    tile: Floats
+    """(2,): width and height of a facade tile, world units."""
+    eye: Floats
+    """(4,) in patch space."""
+    light: Floats
+    """(4,) in patch space."""
+    eye_world: Floats
+    """(4,)."""
+    light_world: Floats
+    """(4,)."""
+    phong: Floats
+    """(3,): ambient, diffuse, specular."""
+    exponent: int
+    """Specular exponent."""
+    view_from_world: Floats
+    """(4, 4)."""
+    clip_from_view: Floats
+    """(4, 4)."""
+
+
 class Settings(NamedTuple):
     """Parameters of the search as the kernels see them."""
 
@@ -112,6 +147,17 @@ def load(array, first, wave):
     """Copy a wave's elements of an array to its lanes."""
     for lane in range(LANES):
         wave[lane] = array[first + lane]
+
+
+@device
+def load_rays(rays, first, u, v, h, du, dv, dh):
+    """Copy a wave's rays to its lanes."""
+    load(rays.u, first, u)
+    load(rays.v, first, v)
+    load(rays.h, first, h)
+    load(rays.du, first, du)
+    load(rays.dv, first, dv)
+    load(rays.dh, first, dh)
 
 
 @device

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ibr_ref.scene import BasePolygon, Camera, Light, checks
@@ -90,7 +91,14 @@ class Params:
 
 
 def check(scene: Scene, params: Params) -> None:
-    """What can only be checked of scene and parameters together (the eye's height is checked with the vertex stage)."""
+    """What can only be checked of scene and parameters together (for the eye's height: `check_eye`)."""
     for i, polygon in enumerate(scene.polygons):
         if polygon.domain == "repeat" and params.drawn_faces != "base":
             raise checks.reject("faces", params.faces, f'base (polygons[{i}].domain is "repeat")')
+
+
+def check_eye(params: Params, eye: ArrayLike) -> None:
+    """faces="extended" needs an eye (4,), in patch space, above the top of the volume."""
+    _, _, height, w = np.asarray(eye, np.float64)
+    if params.drawn_faces == "extended" and not height > w:
+        raise checks.reject("faces", "extended", f"an eye above the volume (its height is {height:g}, the top's {w:g})")

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import lanes, load, over_polygon, store, store_indices
+from ibr_ref.displacement.buffers import lanes, load_rays, over_polygon, store, store_indices
 from ibr_ref.displacement.maxima import highest
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch, lerp
@@ -92,10 +92,8 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
     p_u, p_v, sample, stop = lanes(), lanes(), lanes(), lanes()
     first_step = _first_step(maxima, settings)
     for first in range(0, count, LANES):
+        load_rays(rays, first, u, v, h, du, dv, dh)
         for lane in range(LANES):
-            i = first + lane
-            u[lane], v[lane], h[lane] = rays.u[i], rays.v[i], rays.h[i]
-            du[lane], dv[lane], dh[lane] = rays.du[i], rays.dv[i], rays.dh[i]
             stop[lane] = -1.0
         bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, stop, settings.volume)
         step, leap, stopped = first_step, _LEAP, 0.0
@@ -150,12 +148,7 @@ def binary_search(repeat, rays, count, texels, columns, rows, settings, linear_i
         for lane in range(LANES):
             searching += 1.0 if stop[lane] > 0.0 else 0.0
         if searching > 0.0:
-            load(rays.u, first, u)
-            load(rays.v, first, v)
-            load(rays.h, first, h)
-            load(rays.du, first, du)
-            load(rays.dv, first, dv)
-            load(rays.dh, first, dh)
+            load_rays(rays, first, u, v, h, du, dv, dh)
         for _ in range(settings.binary_steps if searching > 0.0 else 0):
             for lane in range(LANES):
                 t = (outside[lane] + inside[lane]) * 0.5 / total

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import lanes, load, store
+from ibr_ref.displacement.buffers import lanes, load, load_rays, store
 from ibr_ref.displacement.march import clearance, wave_bounds
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch
@@ -18,16 +18,6 @@ from ibr_ref.pipeline.sampling import fetch
 def _distance_to_border(u, v):
     """Distance of (u, v) from the border of the domain, on either side: |min(u, 1 - u, v, 1 - v)|."""
     return abs(min(min(u, 1.0 - u), min(v, 1.0 - v)))
-
-
-@device
-def _load(rays, first, u, v, h, du, dv, dh):
-    load(rays.u, first, u)
-    load(rays.v, first, v)
-    load(rays.h, first, h)
-    load(rays.du, first, du)
-    load(rays.dv, first, dv)
-    load(rays.dh, first, dh)
 
 
 @device
@@ -64,7 +54,7 @@ def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings,
     for lane in range(LANES):
         never[lane] = -1.0
     for first in range(0, count, LANES):
-        _load(rays, first, u, v, h, du, dv, dh)
+        load_rays(rays, first, u, v, h, du, dv, dh)
         load(margin, first, closest)
         last_step = _last_steps(rays, linear_index, first, steps, compared)
         if not settings.volume:
@@ -111,7 +101,7 @@ def binary_margins(repeat, rays, count, texels, columns, rows, settings, linear_
             searching += 1.0 if stop[lane] > 0.0 else 0.0
         if searching == 0.0:
             continue
-        _load(rays, first, u, v, h, du, dv, dh)
+        load_rays(rays, first, u, v, h, du, dv, dh)
         load(margin, first, closest)
         load(border, first, nearest)
         for _ in range(settings.binary_steps):

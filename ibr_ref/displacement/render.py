@@ -28,11 +28,11 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
     params = Params() if params is None else params
     inputs.check(scene, params)
     camera = scene.camera
-    draws = [
-        (polygon, constants, vertex_stage(constants, params.drawn_faces, params.interval))
-        for polygon in scene.polygons
-        for constants in [uniforms(polygon, camera, scene.light)]
-    ]
+    draws = []
+    for polygon in scene.polygons:
+        constants = uniforms(polygon, camera, scene.light)
+        inputs.check_eye(params, constants.eye)
+        draws.append((polygon, constants, vertex_stage(constants, params.drawn_faces, params.interval)))
     target = target_for(camera.width * camera.height, stages)
     clear(target, np.array(scene.background, np.float64))
     for patch_id, (polygon, constants, faces) in enumerate(draws):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,38 +9,27 @@ from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.scene import checks
 from ibr_ref.scene.trigonometry import tangent_of_degrees
+from ibr_ref.scene.vectors import cross, dot, length
 
 MOST_PIXELS = 65536
 """Largest width and height of a picture."""
-
-
-def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-
-
-def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
-    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
-
-
-def _normalized(a: NDArray[np.float64]) -> NDArray[np.float64]:
-    return a / math.sqrt(_dot(a, a))
 
 
 def _view(eye: ArrayLike, target: ArrayLike, up: ArrayLike) -> NDArray[np.float64]:
     """view_from_world for a camera at `eye` that looks at `target`."""
     eye, target, up = checks.vector("eye", eye), checks.vector("target", target), checks.vector("up", up)
     forward = target - eye
-    if _dot(forward, forward) == 0.0:
+    if dot(forward, forward) == 0.0:
         raise checks.reject("target", target.tolist(), "a point other than the eye")
-    right = _cross(forward, up)
-    if _dot(right, right) <= 1e-24 * _dot(forward, forward) * _dot(up, up):
+    right = cross(forward, up)
+    if dot(right, right) <= 1e-24 * dot(forward, forward) * dot(up, up):
         raise checks.reject("up", up.tolist(), "a direction that is not parallel to the line of sight")
-    forward, right = _normalized(forward), _normalized(right)
-    top = _cross(right, forward)
+    forward, right = forward / length(forward), right / length(right)
+    top = cross(right, forward)
     view = np.eye(4)
     for row, axis in enumerate((right, top, -forward)):
         view[row, :3] = axis
-        view[row, 3] = -_dot(axis, eye)
+        view[row, 3] = -dot(axis, eye)
     return view
 
 
@@ -105,17 +93,18 @@ class Camera:
     def _eye(self, perspective: bool) -> NDArray[np.float64]:
         if perspective:
             return np.append(self.world_from_view[:3, 3], 1.0)
-        return np.append(_normalized(self.world_from_view[:3, 2]), 0.0)
+        axis = self.world_from_view[:3, 2]
+        return np.append(axis / length(axis), 0.0)
 
     @property
     def world_from_view(self) -> NDArray[np.float64]:
         """(4, 4) inverse of `view_from_world`: adjugate over determinant, as a measured rotation's transpose is not it."""
         r, t = self.view_from_world[:3, :3], self.view_from_world[:3, 3]
-        columns = (_cross(r[1], r[2]), _cross(r[2], r[0]), _cross(r[0], r[1]))
-        inverse = np.stack(columns, axis=1) / _dot(r[0], columns[0])
+        columns = (cross(r[1], r[2]), cross(r[2], r[0]), cross(r[0], r[1]))
+        inverse = np.stack(columns, axis=1) / dot(r[0], columns[0])
         result = np.eye(4)
         result[:3, :3] = inverse
-        result[:3, 3] = [-_dot(row, t) for row in inverse]
+        result[:3, 3] = [-dot(row, t) for row in inverse]
         return result
 
     @property

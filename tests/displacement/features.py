@@ -179,9 +179,11 @@ def of_outcome(params: Params, frame: Frame) -> Iterator[str]:
         "facade": np.isfinite(stages["shade.axis_margin"].astype(float)),
         "steep without facade": steep & ~np.isfinite(stages["shade.axis_margin"].astype(float)),
         "in shadow": kept & ~stages["shade.lit"].astype(bool) & np.isfinite(stages["shade.lit_margin"].astype(float)),
-        "tie": stages["march.margin"] == 0.0,
-        "tie in depth": stages["resolve.margin"] == 0.0,
     }
+    names = ("march.margin", "march.domain_margin", "march.steep_margin", "shade.lit_margin", "shade.axis_margin")
+    outcomes |= {f"tie of {name}": stages[name] == 0.0 for name in (*names, "resolve.margin")}
+    c = stages["raster.patch"].astype(float)
+    outcomes["fragment on the border"] = (c[..., 2] == 0.0) & ((c[..., :2] == 0.0) | (c[..., :2] == 1.0)).any(axis=-1)
     yield from (name for name, pixels in outcomes.items() if pixels.any())
     yield from (f"face {face}" for face in np.unique(stages["raster.face"][shown]))
 

@@ -219,8 +219,22 @@ EYES: dict[str, SearchStrategy[Array]] = {
 }
 """Where the eye is, in the patch space of the first polygon."""
 
-EXACT_REGIONS = ("on the top", "on planes")
+SIXTEENTHS = st.integers(-4, 20).map(lambda k: k / 16.0)
+
+ALIGNED: dict[str, tuple[Array, SearchStrategy[Array]]] = {
+    "aligned from above": (
+        np.array([0.0, 0.0, -1.0]),
+        points(SIXTEENTHS, SIXTEENTHS, st.sampled_from([1.0, 2.0, 4.0])),
+    ),
+    "aligned along u": (np.array([1.0, 0.0, 0.0]), points(st.sampled_from([-3.0, -1.0, 0.0]), SIXTEENTHS, SIXTEENTHS)),
+    "aligned along v": (np.array([0.0, 1.0, 0.0]), points(SIXTEENTHS, st.sampled_from([-3.0, -1.0, 0.0]), SIXTEENTHS)),
+}
+"""Lines of sight along an axis and eyes on a grid: fragments, samples and hits lie exactly on borders and diagonals."""
+
+EXACT_REGIONS = ("on the top", "on planes", *ALIGNED)
 """Regions that a rounding error would leave: the first polygon is a unit square there."""
+
+REGIONS = (*EYES, *ALIGNED)
 
 
 def up_for(forward: Array, wanted: Array) -> Array:
@@ -256,8 +270,29 @@ def calibrated(seen: Camera, skew: float, mirrored: bool) -> Camera:
 
 
 @st.composite
+def aligned_cameras(draw: DrawFn, shape: Shape, region: str) -> Camera:
+    """A camera of `ALIGNED` whose pixels are powers of two wide: 90 degrees, or orthographic."""
+    direction, eyes = ALIGNED[region]
+    eye = shape.point(draw(eyes))
+    view = {
+        "eye": eye,
+        "target": eye + direction,
+        "up": direction[[1, 2, 0]],
+        "near": 2.0**-6,
+        "far": 64.0,
+        "width": draw(st.sampled_from([8, 16, 32])),
+        "height": draw(st.sampled_from([8, 16])),
+    }
+    if draw(often(True, True, False)):
+        return Camera.look_at(**view, vertical_fov=90.0)
+    return Camera.orthographic(**view, view_height=draw(st.sampled_from([1.0, 2.0])))
+
+
+@st.composite
 def cameras(draw: DrawFn, shape: Shape, region: str) -> Camera:
     """A camera with its eye in a region of `EYES`, that looks at the volume of the shape."""
+    if region in ALIGNED:
+        return draw(aligned_cameras(shape, region))
     eye_patch = draw(EYES[region])
     target_patch = draw(points(real(0.1, 0.9, 0.5), real(0.1, 0.9, 0.5), real(0.0, 1.0, 0.0, 0.5)))
     if np.abs(target_patch - eye_patch).max() < 0.05:
@@ -349,7 +384,7 @@ def parameters(draw: DrawFn, extendable: bool) -> Params:
 
 @st.composite
 def cases(draw: DrawFn, region: str) -> Case:
-    """A whole scene and the parameters that it is rendered with; the eye in a region of `EYES`."""
+    """A whole scene and the parameters that it is rendered with; the eye in one of `REGIONS`."""
     first = draw(unit_shapes() if region in EXACT_REGIONS else shapes())
     others = [draw(neighbours(first)) for _ in range(draw(often(0, 1, 2)))]
     camera = draw(cameras(first, region))

@@ -1,0 +1,25 @@
+"""Three-vectors as arrays: sums from left to right, as the conventions have it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def cross(a: Array, b: Array) -> Array:
+    """The cross product of two (3,) vectors."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def dot(a: Array, b: Array) -> float:
+    """The dot product of two (3,) vectors."""
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
+def length(a: Array) -> float:
+    """The length of a (3,) vector."""
+    return math.sqrt(dot(a, a))
