@@ -119,7 +119,7 @@ def exact_search(repeat, fragments, rays, count, texels, columns, rows, highest,
             t0, t1 = _clip_unit(u, du, t0, t1)
             t0, t1 = _clip_unit(v, dv, t0, t1)
         t = intersect(repeat, texels, columns, rows, highest, u, v, h, du, dv, dh, t0, t1)
-        if t <= 1.0 and h + t * dh > 0.0:
+        if t < 1.0:  # at t = 1 it would hit the face itself, as a search that stops at k = K
             hits.linear_index[i] = np.int32(min(np.ceil(t * steps), steps))
             hits.hit_index[i] = np.int32(min(np.ceil(t * end), end - 1.0))
             hits.u[i], hits.v[i], hits.h[i] = u + du * t, v + dv * t, h + dh * t

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +31,8 @@ class Scene:
     """(3,) linear colour where nothing is shown, in [0, 1]."""
 
     def __post_init__(self) -> None:
+        if isinstance(self.polygons, BasePolygon) or not isinstance(self.polygons, Iterable):
+            raise checks.reject("polygons", type(self.polygons).__name__, "a sequence of BasePolygon")
         polygons = tuple(self.polygons)
         if not polygons:
             raise checks.reject("polygons", "none", "at least one BasePolygon")

@@ -28,27 +28,26 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
     params = Params() if params is None else params
     inputs.check(scene, params)
     camera = scene.camera
-    draws = []
-    for polygon in scene.polygons:
-        constants = uniforms(polygon, camera, scene.light)
-        inputs.check_eye(params, constants.eye)
-        draws.append((polygon, constants, vertex_stage(constants, params.drawn_faces, params.interval)))
+    constants = [uniforms(polygon, camera, scene.light) for polygon in scene.polygons]
+    for polygon_constants in constants:
+        inputs.check_eye(params, polygon_constants.eye)
+    faces = [vertex_stage(c, params.drawn_faces, params.interval) for c in constants]
     target = target_for(camera.width * camera.height, stages)
     clear(target, np.array(scene.background, np.float64))
-    for patch_id, (polygon, constants, faces) in enumerate(draws):
-        clipped = clip_triangles(faces.clip, faces.patch, faces.triangles, camera.width, camera.height)
+    for patch_id, (polygon, quads) in enumerate(zip(scene.polygons, faces, strict=True)):
+        clipped = clip_triangles(quads.clip, quads.patch, quads.triangles, camera.width, camera.height)
         triangles = set_up(clipped, camera.width, camera.height)
         repeat = True if polygon.domain == "repeat" else None
         settings = _settings(params, polygon, stages)
         draw(
-            repeat, triangles, faces.numbers, constants, settings, *_maps(polygon), patch_id,
+            repeat, triangles, quads.numbers, constants[patch_id], settings, *_maps(polygon), patch_id,
             camera.width, camera.height, target,
         )  # fmt: skip
     size = (camera.height, camera.width)
     return Frame(
         color=target.color.reshape(*size, 3),
         depth=target.depth.reshape(size),
-        stages=_stages([faces for _, _, faces in draws], target, size) if stages else {},
+        stages=_stages(faces, target, size) if stages else {},
     )
 
 

@@ -9,15 +9,26 @@ from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.scene import checks
 from ibr_ref.scene.trigonometry import tangent_of_degrees
-from ibr_ref.scene.vectors import cross, dot, length
+from ibr_ref.scene.vectors import Array, cross, dot, length
 
 MOST_PIXELS = 65536
 """Largest width and height of a picture."""
 
+_FARTHEST = 1e50
+_LEAST_FOV = 1e-6
+
+
+def _moderate(field: str, value: ArrayLike) -> Array:
+    """A vector whose products of four components do not overflow."""
+    result = checks.vector(field, value)
+    if not abs(result).max() <= _FARTHEST:
+        raise checks.reject(field, result.tolist(), f"numbers between {-_FARTHEST:g} and {_FARTHEST:g}")
+    return result
+
 
 def _view(eye: ArrayLike, target: ArrayLike, up: ArrayLike) -> NDArray[np.float64]:
     """view_from_world for a camera at `eye` that looks at `target`."""
-    eye, target, up = checks.vector("eye", eye), checks.vector("target", target), checks.vector("up", up)
+    eye, target, up = _moderate("eye", eye), _moderate("target", target), _moderate("up", up)
     forward = target - eye
     if dot(forward, forward) == 0.0:
         raise checks.reject("target", target.tolist(), "a point other than the eye")
@@ -135,9 +146,9 @@ class Camera:
         Raises ValueError if the eye is the target, `up` is parallel to the line of sight, or the projection degenerate.
         """
         view = _view(eye, target, up)
-        fov = checks.number("vertical_fov", vertical_fov, above=0.0)
-        if fov >= 180.0:
-            raise checks.reject("vertical_fov", vertical_fov, "degrees above 0 and below 180")
+        fov = checks.number("vertical_fov", vertical_fov)
+        if not _LEAST_FOV <= fov < 180.0:
+            raise checks.reject("vertical_fov", vertical_fov, f"degrees from {_LEAST_FOV:g}, and below 180")
         near, far = _planes(near, far, above=0.0)
         width, height = _size(width, height)
         focal = 1.0 / tangent_of_degrees(fov / 2.0)

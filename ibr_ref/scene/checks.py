@@ -14,7 +14,8 @@ Vector = tuple[float, float, float]
 
 def reject(field: str, found: object, allowed: str) -> ValueError:
     """The error for a field's value: ``raise reject("height_scale", -1.0, "> 0")``."""
-    return ValueError(f"{field}: found {found!r}, allowed: {allowed}")
+    text = " ".join(repr(found).split())
+    return ValueError(f"{field}: found {text if len(text) <= 200 else text[:197] + '...'}, allowed: {allowed}")
 
 
 def number(
@@ -25,8 +26,10 @@ def number(
     allowed += f" > {above:g}" if above > -math.inf else f" >= {low:g}" if low > -math.inf else ""
     allowed += f", <= {high:g}" if high < math.inf else ""
     try:
+        if isinstance(value, (bool, np.bool_, str)):
+            raise reject(field, value, allowed)
         result = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise reject(field, value, allowed) from None
     if not math.isfinite(result) or not low <= result <= high or result <= above:
         raise reject(field, value, allowed)
@@ -37,7 +40,7 @@ def whole(field: str, value: Any, *, low: int, high: int) -> int:
     """An integer in [low, high]; 3.0 is one, 3.5 and True are not."""
     allowed = f"a whole number from {low} to {high}"
     try:
-        if isinstance(value, bool) or int(value) != value:
+        if isinstance(value, (bool, np.bool_, str)) or int(value) != value:
             raise reject(field, value, allowed)
     except (TypeError, ValueError, OverflowError):
         raise reject(field, value, allowed) from None
@@ -52,13 +55,21 @@ def choice(field: str, value: object, allowed: Sequence[str]) -> None:
         raise reject(field, value, " | ".join(allowed))
 
 
+def numbers(field: str, value: Any, allowed: str) -> NDArray[np.float64]:
+    """A new C-ordered float64 array of what can be one: not of ragged lists, complex numbers, words."""
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "buif":
+            raise TypeError
+        return np.array(array, np.float64, order="C")
+    except (TypeError, ValueError, OverflowError):
+        raise reject(field, value, allowed) from None
+
+
 def vector(field: str, value: ArrayLike, length: int = 3) -> NDArray[np.float64]:
     """A read-only float64 array of `length` finite numbers."""
     allowed = f"{length} finite numbers"
-    try:
-        array = np.array(value, np.float64)
-    except (TypeError, ValueError):
-        raise reject(field, value, allowed) from None
+    array = numbers(field, value, allowed)
     if array.shape != (length,) or not np.isfinite(array).all():
         raise reject(field, value, allowed)
     return frozen(array)
@@ -67,10 +78,7 @@ def vector(field: str, value: ArrayLike, length: int = 3) -> NDArray[np.float64]
 def matrix(field: str, value: ArrayLike, rows: int, columns: int) -> NDArray[np.float64]:
     """A read-only float64 array of rows x columns finite numbers."""
     allowed = f"a {rows} x {columns} matrix of finite numbers"
-    try:
-        array = np.array(value, np.float64)
-    except (TypeError, ValueError):
-        raise reject(field, value, allowed) from None
+    array = numbers(field, value, allowed)
     if array.shape != (rows, columns) or not np.isfinite(array).all():
         raise reject(field, value, allowed)
     return frozen(array)
@@ -79,10 +87,7 @@ def matrix(field: str, value: ArrayLike, rows: int, columns: int) -> NDArray[np.
 def texture(field: str, value: ArrayLike, channels: int) -> NDArray[np.float64]:
     """A read-only, C-ordered float64 copy of an image: (H, W), or (H, W, 3); every texel in [0, 1]."""
     shape = "(H, W)" if channels == 1 else f"(H, W, {channels})"
-    try:
-        array = np.array(value, np.float64, order="C")
-    except (TypeError, ValueError):
-        raise reject(field, type(value).__name__, f"an array {shape} of numbers in [0, 1]") from None
+    array = numbers(field, value, f"an array {shape} of numbers in [0, 1]")
     if array.ndim != (2 if channels == 1 else 3) or array.size == 0 or (channels > 1 and array.shape[2] != channels):
         raise reject(f"{field}.shape", array.shape, f"{shape}, not empty")
     if array.size >= 2**31:

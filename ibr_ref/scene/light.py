@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.scene import checks
+from ibr_ref.scene.vectors import unit
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -49,5 +50,4 @@ class Light:
         """(4,) in world space: (position, 1), or (unit direction, 0)."""
         if self.direction is None:
             return np.append(np.asarray(self.position, np.float64), 1.0)
-        x, y, z = np.asarray(self.direction, np.float64)
-        return np.append(np.array([x, y, z]) / np.sqrt(x * x + y * y + z * z), 0.0)
+        return np.append(unit(np.asarray(self.direction, np.float64)), 0.0)

@@ -25,7 +25,7 @@ class Mesh:
     """(3,) for the whole mesh, or (V, 3); linear, in [0, 1]."""
 
     def __post_init__(self) -> None:
-        vertices = np.array(self.vertices, np.float64, order="C")
+        vertices = checks.numbers("vertices", self.vertices, "an array (V, 3) of finite numbers")
         if vertices.ndim != 2 or vertices.shape[1] != 3 or not len(vertices):
             raise checks.reject("vertices.shape", vertices.shape, "(V, 3), V >= 1")
         if not np.isfinite(vertices).all():
@@ -33,14 +33,16 @@ class Mesh:
             raise checks.reject(f"vertices[{row}]", vertices[row].tolist(), "finite numbers")
         object.__setattr__(self, "vertices", checks.frozen(vertices))
         object.__setattr__(self, "triangles", self._checked_triangles(len(vertices)))
-        color = np.array(self.color, np.float64)
+        color = checks.numbers("color", self.color, f"(3,) or {vertices.shape} numbers in [0, 1]")
         if color.shape not in ((3,), vertices.shape):
             raise checks.reject("color.shape", color.shape, f"(3,) or {vertices.shape}")
-        if not ((color >= 0.0) & (color <= 1.0)).all():
-            raise checks.reject("color", "a component outside", "numbers in [0, 1]")
+        bad = ~((color >= 0.0) & (color <= 1.0))
+        if bad.any():
+            raise checks.reject("color", float(color[bad][0]), "numbers in [0, 1]")
         object.__setattr__(self, "color", checks.frozen(color))
 
     def _checked_triangles(self, count: int) -> NDArray[np.int32]:
+        checks.numbers("triangles", self.triangles, "an array (T, 3) of whole numbers")
         triangles = np.array(self.triangles)
         if triangles.ndim != 2 or triangles.shape[1] != 3 or not len(triangles):
             raise checks.reject("triangles.shape", triangles.shape, "(T, 3), T >= 1")

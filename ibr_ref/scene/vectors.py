@@ -23,3 +23,12 @@ def dot(a: Array, b: Array) -> float:
 def length(a: Array) -> float:
     """The length of a (3,) vector."""
     return math.sqrt(dot(a, a))
+
+
+def unit(a: Array) -> Array:
+    """The (3,) vector, not zero, divided by its length.
+
+    Scaled by a power of two first, which is exact, so that no square over- or underflows.
+    """
+    scaled = np.ldexp(a, -int(np.frexp(abs(a).max())[1]))
+    return scaled / length(scaled)

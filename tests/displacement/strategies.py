@@ -7,6 +7,7 @@ values that tie with something, or spread evenly. What the API rejects is not dr
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -102,7 +103,7 @@ def height_maps(draw: DrawFn) -> Array:
     if kind == "noise":
         return random.random_sample(size)
     if kind == "terraces":
-        return random.choice(np.array([0.0, 0.25, 0.5, 0.7, 1.0]), size)
+        return random.choice(np.array([0.0, 0.25, 0.5, 0.75, 1.0]), size)
     if kind == "flat":
         return np.full(size, draw(st.one_of(st.sampled_from([0.5, 0.0, 1.0, 0.25]), real(0.0, 1.0))))
     if kind == "ramp":
@@ -114,6 +115,15 @@ def height_maps(draw: DrawFn) -> Array:
         extent = random.randint(1, 2 + max(size) // 2, 2) if kind == "boxes" else (1, 1)
         heights[row : row + extent[0], column : column + extent[1]] = top
     return heights
+
+
+@st.composite
+def aligned_height_maps(draw: DrawFn) -> Array:
+    """Quarters on maps of powers of two: their bilinear mixes are exact at the places that `ALIGNED` cameras see."""
+    size = draw(st.sampled_from([(1, 1), (2, 2), (4, 4), (8, 8), (1, 4), (4, 2)]))
+    if draw(st.booleans()):
+        return np.full(size, draw(st.sampled_from([0.0, 0.25, 0.5, 1.0])))
+    return np.random.RandomState(draw(st.integers(0, 2**16))).choice(np.array([0.0, 0.25, 0.5, 1.0]), size)
 
 
 @st.composite
@@ -180,18 +190,18 @@ def neighbours(draw: DrawFn, first: Shape) -> Shape:
 
 
 @st.composite
-def polygons(draw: DrawFn, shape: Shape, domain: str) -> BasePolygon:
+def polygons(draw: DrawFn, shape: Shape, domain: str, aligned: bool) -> BasePolygon:
     """The polygon of a shape, with its maps."""
     width = float(np.linalg.norm(shape.edge_u))
     return BasePolygon(
         corner=shape.corner,
         edge_u=shape.edge_u,
         edge_v=shape.edge_v,
-        height_map=draw(height_maps()),
+        height_map=draw(aligned_height_maps() if aligned else height_maps()),
         color_map=draw(colors()),
         height_scale=shape.height_scale,
         normal_map=draw(st.one_of(st.none(), normal_maps())),
-        facade_map=draw(st.one_of(st.none(), colors(4))),
+        facade_map=draw(colors(4) if aligned else st.one_of(st.none(), colors(4))),
         facade_tile=(width * draw(real(0.05, 2.0)), shape.height_scale * draw(real(0.05, 2.0, 1.0))),
         domain=domain,
     )
@@ -224,7 +234,7 @@ SIXTEENTHS = st.integers(-4, 20).map(lambda k: k / 16.0)
 ALIGNED: dict[str, tuple[Array, SearchStrategy[Array]]] = {
     "aligned from above": (
         np.array([0.0, 0.0, -1.0]),
-        points(SIXTEENTHS, SIXTEENTHS, st.sampled_from([1.0, 2.0, 4.0])),
+        points(SIXTEENTHS, SIXTEENTHS, st.sampled_from([1.0, 2.0, 3.0, 4.0])),
     ),
     "aligned along u": (np.array([1.0, 0.0, 0.0]), points(st.sampled_from([-3.0, -1.0, 0.0]), SIXTEENTHS, SIXTEENTHS)),
     "aligned along v": (np.array([0.0, 1.0, 0.0]), points(SIXTEENTHS, st.sampled_from([-3.0, -1.0, 0.0]), SIXTEENTHS)),
@@ -234,7 +244,8 @@ ALIGNED: dict[str, tuple[Array, SearchStrategy[Array]]] = {
 EXACT_REGIONS = ("on the top", "on planes", *ALIGNED)
 """Regions that a rounding error would leave: the first polygon is a unit square there."""
 
-REGIONS = (*EYES, *ALIGNED)
+REGIONS = (*EYES, *ALIGNED, "aligned from above")
+"""All; the one with most ties twice."""
 
 
 def up_for(forward: Array, wanted: Array) -> Array:
@@ -277,7 +288,7 @@ def aligned_cameras(draw: DrawFn, shape: Shape, region: str) -> Camera:
     view = {
         "eye": eye,
         "target": eye + direction,
-        "up": direction[[1, 2, 0]],
+        "up": draw(st.sampled_from([1.0, -1.0])) * direction[draw(st.sampled_from([[1, 2, 0], [2, 0, 1]]))],
         "near": 2.0**-6,
         "far": 64.0,
         "width": draw(st.sampled_from([8, 16, 32])),
@@ -339,6 +350,15 @@ def lights(draw: DrawFn, shape: Shape) -> Light:
     return Light(direction=shape.vector(towards), **coefficients)
 
 
+@st.composite
+def aligned_lights(draw: DrawFn, shape: Shape) -> Light:
+    """A lamp on a grid, or light straight from above: with `ties`, shadow rays graze the heights exactly."""
+    if draw(st.booleans()):
+        return Light(direction=shape.up)
+    quarters = st.integers(-2, 6).map(lambda k: k / 4.0)
+    return Light(position=shape.point(draw(points(quarters, quarters, st.sampled_from([0.5, 1.0, 2.0])))), specular=0.5)
+
+
 # --- Frames ----------------------------------------------------------------------------------------------------------
 
 
@@ -383,17 +403,32 @@ def parameters(draw: DrawFn, extendable: bool) -> Params:
 
 
 @st.composite
+def ties(draw: DrawFn, params: Params) -> Params:
+    """The same on a lattice of powers of two, so that samples, heights and threshold often are the same number."""
+    return dataclasses.replace(
+        params,
+        linear_steps=draw(st.sampled_from([1, 2, 4, 8])),
+        steep_threshold=draw(st.sampled_from([-0.25, 0.0, 0.25, 0.5])),
+        shadow_steps=draw(st.sampled_from([0, 1, 1, 3])),
+        shadow_bias=draw(st.sampled_from([0.0, 0.0, 0.25])),
+    )
+
+
+@st.composite
 def cases(draw: DrawFn, region: str) -> Case:
     """A whole scene and the parameters that it is rendered with; the eye in one of `REGIONS`."""
+    aligned = region in ALIGNED
     first = draw(unit_shapes() if region in EXACT_REGIONS else shapes())
     others = [draw(neighbours(first)) for _ in range(draw(often(0, 1, 2)))]
     camera = draw(cameras(first, region))
     params = draw(parameters(eyes_above([first, *others], camera)))
+    if aligned:
+        params = draw(ties(params))
     domains = st.sampled_from(["clip", "repeat"]) if params.drawn_faces == "base" else st.just("clip")
     scene = Scene(
-        polygons=[draw(polygons(shape, draw(domains))) for shape in (first, *others)],
+        polygons=[draw(polygons(shape, draw(domains), aligned)) for shape in (first, *others)],
         camera=camera,
-        light=draw(lights(first)),
+        light=draw(aligned_lights(first) if aligned else lights(first)),
         background=draw(st.tuples(*[real(0.0, 1.0)] * 3)),
     )
     return Case(scene, params)

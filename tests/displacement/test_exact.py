@@ -169,7 +169,7 @@ tiny_maps = st.tuples(st.integers(1, 5), st.integers(1, 5), st.integers(0, 10**6
 )
 above = st.tuples(st.floats(-1.5, 2.5), st.floats(-1.5, 2.5), st.floats(0.3, 1.5))
 targets = st.tuples(st.floats(0.2, 0.8), st.floats(0.2, 0.8), st.floats(0.0, 0.2))
-few = settings(derandomize=True, deadline=None, max_examples=80, phases=[Phase.explicit, Phase.generate])
+few = settings(derandomize=True, deadline=None, max_examples=50, phases=[Phase.explicit, Phase.generate])
 
 
 @few

@@ -1,4 +1,4 @@
-"""The package agrees with the naive twin bit for bit: on 468 drawn scenes, and on the built-in models."""
+"""The package agrees with the naive twin bit for bit: on 504 drawn scenes, and on the built-in models."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.displacement.agreement import Arrays, arrays_of, check_agreement, che
 from tests.displacement.features import features
 from tests.displacement.strategies import REGIONS, Case, cases
 
-SCENES = 468
+SCENES = 504
 
 seen: Counter[str] = Counter()
 """In how many of the drawn scenes each feature occurred; "scenes" counts them all. No scene counts twice."""
@@ -34,8 +34,9 @@ LEAST = {
     "out: hit protruded": 0.2 * SCENES,
     "out: hit relief": 0.05 * SCENES,
     "in: several polygons": 0.3 * SCENES,
+    "out: tie of shade.lit_margin": 1,
 }
-"""Scenes that must show a feature, where the usual `FEW` are not enough."""
+"""Scenes that must show a feature, where that is not the usual `FEW`."""
 
 FEW = 3
 

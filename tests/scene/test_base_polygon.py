@@ -18,7 +18,7 @@ VALUES: dict[str, Any] = {"corner": (0, 0, 0), "edge_u": (2, 0, 0), "edge_v": (0
 
 NOT_NUMBERS = [(np.nan, "nan"), (np.inf, "inf"), ("a", "'a'"), (None, "None"), ([0.5, 0.5], "[0.5, 0.5]"), (1j, "1j")]
 NOT_VECTORS = [((0, 1), "(0, 1)"), ((0, np.nan, 1), "nan"), ((0, -np.inf, 1), "-inf"), ("up", "'up'"), (None, "None")]
-NOT_MAPS = [("a map", "str"), (None, "NoneType"), (object(), "object"), ([[1, 0], [1]], "list")]
+NOT_MAPS = [("a map", "'a map'"), (None, "NoneType"), (object(), "object"), ([[1, 0], [1]], "[[1, 0], [1]]")]
 
 
 def with_texel(image: np.ndarray, where: tuple[int, ...], value: float) -> np.ndarray:
