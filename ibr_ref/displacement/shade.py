@@ -100,10 +100,11 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
             m0 = 2.0 * mix_channel(texels, r, i00, i10, i01, i11, fx, fy) - 1.0
             m1 = 2.0 * mix_channel(texels, g, i00, i10, i01, i11, fx, fy) - 1.0
             m2 = 2.0 * mix_channel(texels, b, i00, i10, i01, i11, fx, fy) - 1.0
-            m2 = 1.0 if (m0 == 0.0) & (m1 == 0.0) & (m2 == 0.0) else m2
             x[lane], y[lane], z[lane] = _unit(
                 m0 * tx + m1 * bx + m2 * nx, m0 * ty + m1 * by + m2 * ny, m0 * tz + m1 * bz + m2 * nz
             )
+            if (m0 == 0.0) & (m1 == 0.0) & (m2 == 0.0):
+                x[lane], y[lane], z[lane] = nx, ny, nz
         store(x, normal[0], first)
         store(y, normal[1], first)
         store(z, normal[2], first)
