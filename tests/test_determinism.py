@@ -25,6 +25,9 @@ SMALL, TINY = "48x36", "16x12"
 TINY_SCENES = ("box", "relief", "tiles", "exact")
 """Those with small maps: without compiled kernels a picture takes seconds."""
 
+CLAMPED = tuple(name for name in golden.SCENES if name != "tiles")
+"""Those that do not repeat their maps: the kernels for those that do would be compiled as well."""
+
 
 @dataclass(frozen=True)
 class Way:
@@ -39,9 +42,9 @@ class Way:
 
 WAYS = {
     "two threads": Way({"NUMBA_NUM_THREADS": "2"}, {"threads": 2, "serial": False, "compiled": True}),
-    "serial": Way({"IBR_REF_SERIAL": "1"}, {"serial": True, "bounds checked": False}),
+    "serial": Way({"IBR_REF_SERIAL": "1"}, {"serial": True, "bounds checked": False}, scenes=CLAMPED),
     "bounds checked": Way({"IBR_REF_SERIAL": "1", "NUMBA_BOUNDSCHECK": "1"}, {"serial": True, "bounds checked": True}),
-    "generic processor": Way({"NUMBA_CPU_NAME": "generic"}, {"processor": "generic"}),
+    "generic processor": Way({"NUMBA_CPU_NAME": "generic"}, {"processor": "generic"}, scenes=CLAMPED),
     "one thread": Way({"NUMBA_NUM_THREADS": "1"}, {"threads": 1, "serial": False}),
     "tiny": Way({}, {"compiled": True}, TINY, TINY_SCENES),
     "not compiled": Way({"NUMBA_DISABLE_JIT": "1"}, {"compiled": False}, TINY, TINY_SCENES),
@@ -70,8 +73,8 @@ def results() -> Iterator[dict[str, Future[dict[str, Any]]]]:
 
 
 def differing(digests: dict[str, golden.Digests], expected: dict[str, golden.Digests]) -> dict[str, list[str]]:
-    """The arrays that differ, by the name of the scene."""
-    assert list(digests) == list(expected)
+    """The arrays that differ, by the name of the scene, in those scenes that were rendered."""
+    assert digests.keys() <= expected.keys()
     changed = {name: golden.changed(digests[name], expected[name]) for name in digests}
     return {name: arrays for name, arrays in changed.items() if arrays}
 
@@ -85,6 +88,10 @@ def test_switches_take_effect(name: str, results: dict[str, Future[dict[str, Any
 @pytest.mark.parametrize("name", ["one thread", "serial", "bounds checked", "generic processor"])
 def test_bits_are_those_of_two_threads(name: str, results: dict[str, Future[dict[str, Any]]]) -> None:
     assert not differing(results[name].result()["digests"], results["two threads"].result()["digests"])
+
+
+def test_every_scene_is_rendered_with_bounds_checked(results: dict[str, Future[dict[str, Any]]]) -> None:
+    assert list(results["bounds checked"].result()["digests"]) == list(golden.SCENES)
 
 
 def test_bits_are_those_of_plain_python(results: dict[str, Future[dict[str, Any]]]) -> None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.jit import device, kernel, prange
+from ibr_ref.jit import device, kernel, prange, routine
 
 CELL = 8
 
@@ -49,15 +49,22 @@ def _cells(texels, rows, columns, values, cell_rows, cell_columns):
             values[i * cell_columns + j] = largest * _INFLATE
 
 
-@kernel
+@device
 def _halve(values, source, source_rows, source_columns, target, rows, columns):
-    for i in prange(rows):
+    for i in range(rows):
         for j in range(columns):
             largest = 0.0
             for y in range(2 * i, min(source_rows, 2 * i + 2)):
                 for x in range(2 * j, min(source_columns, 2 * j + 2)):
                     largest = max(largest, values[source + y * source_columns + x])
             values[target + i * columns + j] = largest
+
+
+@routine
+def _coarser_levels(values, offsets, rows, columns):
+    for level in range(1, len(offsets)):
+        fine = level - 1
+        _halve(values, offsets[fine], rows[fine], columns[fine], offsets[level], rows[level], columns[level])
 
 
 def build(texels: NDArray[np.float64], rows: int, columns: int) -> Maxima:
@@ -69,13 +76,13 @@ def build(texels: NDArray[np.float64], rows: int, columns: int) -> Maxima:
     offsets = np.cumsum(counts) - counts
     values = np.empty(int(counts.sum()))
     _cells(texels, rows, columns, values, *sizes[0])
-    for level in range(1, len(sizes)):
-        _halve(values, offsets[level - 1], *sizes[level - 1], offsets[level], *sizes[level])
+    all_rows, all_columns = np.array([r for r, _ in sizes]), np.array([c for _, c in sizes])
+    _coarser_levels(values, offsets, all_rows, all_columns)
     return Maxima(
         values,
         offsets,
-        np.array([c for _, c in sizes]),
-        np.array([r for r, _ in sizes]),
+        all_columns,
+        all_rows,
         np.array([columns / CELL, rows / CELL]),
         float(values[-1]),
     )

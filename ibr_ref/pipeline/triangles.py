@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.jit import device, kernel, prange
+from ibr_ref.jit import device, routine
 from ibr_ref.pipeline.clip import ClippedTriangles
 
 SUBPIXELS = 256
@@ -67,9 +67,9 @@ def _area(xs, ys):
     return (xs[1] - xs[0]) * (ys[2] - ys[0]) - (ys[1] - ys[0]) * (xs[2] - xs[0])
 
 
-@kernel
+@routine
 def _set_up(clip, width, height, x, y, z, w, rows):
-    for triangle in prange(len(clip)):
+    for triangle in range(len(clip)):
         for corner in range(3):
             p = clip[triangle, corner]
             x[triangle, corner] = np.int64(np.rint(_window_x(p[0], p[3], width) * SUBPIXELS))
