@@ -35,11 +35,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ibr_ref import displacement, io, models
-    from ibr_ref.scene import BasePolygon, Camera, Light, Mesh
+    from ibr_ref.scene import BasePolygon, Camera, DepthImage, Light, Mesh
 
 __version__ = "0.1.0"
 
-__all__ = ["BasePolygon", "Camera", "Light", "Mesh", "displacement", "io", "models"]
+__all__ = ["BasePolygon", "Camera", "DepthImage", "Light", "Mesh", "displacement", "io", "models"]
 
 _MODULES = ("displacement", "io", "models")
 

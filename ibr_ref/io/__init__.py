@@ -1,9 +1,11 @@
-"""Images, meshes, stage dumps: everything that touches a file."""
+"""Images, meshes, depth images, stage dumps: everything that touches a file."""
 
 from ibr_ref.io.files import check_writable
 from ibr_ref.io.frame import Frame
 from ibr_ref.io.images import check_image_writable, read_image, write_image
 from ibr_ref.io.meshes import read_mesh
+from ibr_ref.io.msr import read_msr
+from ibr_ref.io.simple_texture import read_simple_texture, write_simple_texture
 from ibr_ref.io.textures import read_color, read_height, read_normal, read_normal_height
 
 __all__ = [
@@ -14,7 +16,10 @@ __all__ = [
     "read_height",
     "read_image",
     "read_mesh",
+    "read_msr",
     "read_normal",
     "read_normal_height",
+    "read_simple_texture",
     "write_image",
+    "write_simple_texture",
 ]

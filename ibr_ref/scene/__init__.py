@@ -1,8 +1,12 @@
-"""What a caller describes: cameras, lights, meshes, base polygons. Frozen dataclasses, validated at construction."""
+"""What a caller describes: cameras, lights, meshes, base polygons, depth images.
+
+Frozen dataclasses, validated at construction.
+"""
 
 from ibr_ref.scene.base_polygon import BasePolygon
 from ibr_ref.scene.camera import Camera
+from ibr_ref.scene.depth_image import DepthImage
 from ibr_ref.scene.light import Light
 from ibr_ref.scene.mesh import Mesh
 
-__all__ = ["BasePolygon", "Camera", "Light", "Mesh"]
+__all__ = ["BasePolygon", "Camera", "DepthImage", "Light", "Mesh"]

@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.scene import checks
-from ibr_ref.scene.trigonometry import tangent_of_degrees
-from ibr_ref.scene.vectors import Array, cross, dot, length
+from ibr_ref.scene.trigonometry import sine_cosine, tangent_of_degrees
+from ibr_ref.scene.vectors import Array, cross, dot, length, unit
 
 MOST_PIXELS = 65536
 """Largest width and height of a picture."""
 
 _FARTHEST = 1e50
 _LEAST_FOV = 1e-6
+
+
+class AxisAngle(NamedTuple):
+    """What `Camera.axis_angle` was given. Files keep these numbers, not the matrices made of them."""
+
+    position: tuple[float, float, float]
+    orientation: tuple[float, float, float, float]
+    field_of_view: tuple[float, float]
 
 
 def _moderate(field: str, value: ArrayLike) -> Array:
@@ -54,9 +64,10 @@ class Camera:
     """Where the picture is taken from, and how it is projected.
 
     View space is right-handed, looks down -z, +y up; NDC has y up and z in [0, 1], 0 at the near plane. Prefer
-    `look_at`, `orthographic` and `calibrated` to the constructor.
+    `look_at`, `orthographic`, `calibrated` and `axis_angle` to the constructor.
 
-    Raises ValueError for near or far out of order, a picture without pixels, or matrices that are not invertible.
+    Raises ValueError for near or far out of order, a picture without pixels, matrices that are not invertible, or a
+    projection that is off the view's -z axis, which no intrinsics express.
     """
 
     view_from_world: NDArray[np.float64]
@@ -74,6 +85,11 @@ class Camera:
     eye: NDArray[np.float64] = None  # type: ignore[assignment]
     """(4,) in world space: the eye (x, y, z, 1), or, orthographic, the unit direction towards it (x, y, z, 0). Left out,
     it is computed from the matrix."""
+    intrinsics: NDArray[np.float64] = None  # type: ignore[assignment]
+    """(3, 3) in pixels, [[f_x, s, c_x], [0, f_y, c_y], [0, 0, 1]]: window = intrinsics (x/-z, -y/-z, 1), or, orthographic,
+    intrinsics (x, -y, 1), f_x and f_y then pixels a world unit. Left out, they are computed from the matrix."""
+    afx: AxisAngle | None = field(default=None, init=False)
+    """The fields that `axis_angle` made the camera of; None for all others."""
 
     def __post_init__(self) -> None:
         set_field = object.__setattr__
@@ -100,12 +116,34 @@ class Camera:
         set_field(self, "eye", checks.vector("eye", eye, 4))
         if self.eye[3] != float(perspective):
             raise checks.reject("eye[3]", float(self.eye[3]), "1 for a perspective camera, 0 for an orthographic one")
+        set_field(self, "intrinsics", self._checked_intrinsics())
 
     def _eye(self, perspective: bool) -> NDArray[np.float64]:
         if perspective:
             return np.append(self.world_from_view[:3, 3], 1.0)
         axis = self.world_from_view[:3, 2]
         return np.append(axis / length(axis), 0.0)
+
+    def _checked_intrinsics(self) -> NDArray[np.float64]:
+        """The matrix' own, or those given, which may differ from them by rounding."""
+        half_width, half_height = self.width / 2.0, self.height / 2.0
+        x, y = self.clip_from_view[:2].tolist()
+        if self.perspective:
+            unused, shift_x, shift_y = (x[3], y[0], y[3]), -x[2], y[2]
+        else:
+            unused, shift_x, shift_y = (x[2], y[0], y[2]), x[3], -y[3]
+        if any(unused):
+            form = "[[a, b, c, 0], [0, d, e, 0]]" if self.perspective else "[[a, b, 0, c], [0, d, 0, e]]"
+            raise checks.reject("clip_from_view[:2]", [x, y], form)
+        row_x = [x[0] * half_width, 0.0 - x[1] * half_width, (1.0 + shift_x) * half_width]
+        row_y = [0.0, y[1] * half_height, (1.0 + shift_y) * half_height]
+        computed = checks.matrix("intrinsics", [row_x, row_y, [0.0, 0.0, 1.0]], 3, 3)
+        given = computed if self.intrinsics is None else checks.matrix("intrinsics", self.intrinsics, 3, 3)
+        if not np.abs(given - computed).max() <= 1e-9 * np.abs(computed).max():
+            raise checks.reject(
+                "intrinsics", given.tolist(), f"those of clip_from_view and the size, {computed.tolist()}"
+            )
+        return given
 
     @property
     def world_from_view(self) -> NDArray[np.float64]:
@@ -221,7 +259,91 @@ class Camera:
         clip[1, 1:3] = 2.0 * k[1, 1] / height, 2.0 * k[1, 2] / height - 1.0
         clip[2, 2:] = _depth_row(near, far, perspective=True)
         clip[3, 2] = -1.0
-        return cls(view_from_world=view, clip_from_view=clip, near=near, far=far, width=width, height=height)
+        return cls(
+            view_from_world=view,
+            clip_from_view=clip,
+            near=near,
+            far=far,
+            width=width,
+            height=height,
+            intrinsics=k,  # as given: the matrix would return them rounded
+        )
+
+    @classmethod
+    def axis_angle(
+        cls,
+        *,
+        position: ArrayLike,
+        orientation: ArrayLike,
+        field_of_view: ArrayLike,
+        orthographic: bool = False,
+        near: float = 0.1,
+        far: float = 100.0,
+        width: int = 640,
+        height: int = 480,
+    ) -> Camera:
+        """The camera of an MPEG-4 AFX `DepthImage` (ISO/IEC 14496-16).
+
+        position (3,) in world space. orientation (x, y, z, angle): the turn, by an angle in radians about an axis of any
+        length but 0, from a camera that looks down -z of the world, +y up. field_of_view: the full horizontal and
+        vertical angles in radians, above 0 and below pi; orthographic, the width and height of what it sees, in world
+        units, > 0. The numbers given stay in `afx`. Raises ValueError for others.
+        """
+        at = checks.vector("position", position)
+        turn = checks.vector("orientation", orientation, 4)
+        fov = checks.vector("field_of_view", field_of_view, 2)
+        near, far = _planes(near, far, above=-np.inf if orthographic else 0.0)
+        width, height = _size(width, height)
+        view = np.eye(4)
+        # The rotation is world from view; it is orthogonal to the last bit or two, so its transpose is its inverse.
+        view[:3, :3] = _rotation(turn).T
+        view[:3, 3] = [-dot(row, at) for row in view[:3, :3]]
+        clip = np.eye(4)
+        clip[0, 0], clip[1, 1] = _scales(fov, orthographic)
+        clip[2, 2:] = _depth_row(near, far, perspective=not orthographic)
+        if not orthographic:
+            clip[3, 2:] = -1.0, 0.0
+        camera = cls(
+            view_from_world=view,
+            clip_from_view=clip,
+            near=near,
+            far=far,
+            width=width,
+            height=height,
+            eye=None if orthographic else np.append(at, 1.0),  # type: ignore[arg-type]
+        )
+        object.__setattr__(camera, "afx", AxisAngle(tuple(at.tolist()), tuple(turn.tolist()), tuple(fov.tolist())))
+        return camera
+
+
+def _rotation(orientation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3) by Rodrigues' formula, from (x, y, z, angle)."""
+    longest = float(np.abs(orientation[:3]).max())
+    if longest == 0.0 or not abs(orientation[3]) <= 1e6:
+        raise checks.reject("orientation", orientation.tolist(), "an axis that is not zero, an angle from -1e6 to 1e6")
+    x, y, z = unit(orientation[:3]).tolist()
+    s, c = sine_cosine(float(orientation[3]))
+    t = 1.0 - c
+    return np.array(
+        [
+            (t * x * x + c, t * x * y - s * z, t * x * z + s * y),
+            (t * x * y + s * z, t * y * y + c, t * y * z - s * x),
+            (t * x * z - s * y, t * y * z + s * x, t * z * z + c),
+        ]
+    )
+
+
+def _scales(field_of_view: NDArray[np.float64], orthographic: bool) -> tuple[float, float]:
+    """NDC x and y at x = y = 1 of the view, at a distance of 1."""
+    scales = []
+    for size in field_of_view.tolist():
+        above, below = (size / 2.0, 1.0) if orthographic else sine_cosine(size / 2.0)
+        scale = below / above if above > 0.0 and (orthographic or size < math.pi) else math.inf
+        if not 0.0 < scale < math.inf:
+            allowed = "a width and a height > 0" if orthographic else "angles in radians above 0 and below pi"
+            raise checks.reject("field_of_view", field_of_view.tolist(), allowed)
+        scales.append(scale)
+    return scales[0], scales[1]
 
 
 def _planes(near: float, far: float, above: float = -np.inf) -> tuple[float, float]:

@@ -7,6 +7,7 @@ descriptions only.
 
 from __future__ import annotations
 
+import math
 from decimal import Decimal, localcontext
 
 _DIGITS = 60
@@ -34,6 +35,16 @@ def sine_cosine(angle: float) -> tuple[float, float]:
         context.prec = _DIGITS + 20
         sine, cosine = _sine_cosine(Decimal(angle))
         return float(sine), float(cosine)
+
+
+def arctangent(y: float, x: float) -> float:
+    """The angle, in radians from -pi to pi, of the direction (x, y)."""
+    with localcontext() as context:
+        context.prec = _DIGITS + 20
+        angle = Decimal(math.atan2(y, x))  # right to 1e-15 in any library; what is missing is its own tangent, to 1e-45
+        sine, cosine = _sine_cosine(angle)
+        across, along = Decimal(y) * cosine - Decimal(x) * sine, Decimal(x) * cosine + Decimal(y) * sine
+        return float(angle + across / along if along else angle)
 
 
 def tangent_of_degrees(degrees: float) -> float:

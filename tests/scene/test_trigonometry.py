@@ -1,4 +1,4 @@
-"""Sine, cosine, tangent: the nearest float64 to the true value."""
+"""Sine, cosine, tangent, arctangent: the nearest float64 to the true value."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
-from ibr_ref.scene.trigonometry import sine_cosine, tangent_of_degrees
+from ibr_ref.scene.trigonometry import arctangent, sine_cosine, tangent_of_degrees
 
 DIGITS = 50
 
@@ -67,3 +67,13 @@ def test_special_angles(angle: float) -> None:
     sine, cosine = sine_cosine(angle)
     assert ulps(sine, math.sin(angle)) <= 1
     assert ulps(cosine, math.cos(angle)) <= 1
+
+
+def test_the_arctangent_turns_back() -> None:
+    """Against the mathematics library to within one unit in the last place, and where the angle is known."""
+    for y, x in np.random.RandomState(2).uniform(-10, 10, (300, 2)).tolist():
+        assert ulps(arctangent(y, x), math.atan2(y, x)) <= 1
+    for y, x in [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (1e-300, 1e300), (1.0, 1e-17), (0.0, 0.0)]:
+        assert arctangent(y, x) == math.atan2(y, x)
+    assert arctangent(1.0, 1.0) == math.pi / 4
+    assert arctangent(math.sqrt(3.0), 1.0) == pytest.approx(math.pi / 3, rel=2**-51)
