@@ -20,6 +20,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -43,20 +44,31 @@ functions: list[Any] = []
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+PACKAGE = Path(__file__).parent
 
-_WITHOUT_KERNELS = ("cli", "io", "models", "scene")  # kernels import nothing from there: a contract in pyproject.toml
+
+def _room(function: Callable[..., Any]) -> str:
+    """The folder of the package that a function stands in, such as "pipeline"; "" for functions outside the package."""
+    package, *names = function.__module__.split(".")
+    return names[0] if package == PACKAGE.name and len(names) > 1 else ""
 
 
-def _digest() -> str:
+def _sources(room: str) -> list[Path]:
+    """Every file that a kernel of this room can be made of: this one, the pipeline, and the room's own.
+
+    Methods do not import each other (a contract in pyproject.toml); a kernel outside the package may use all of it.
+    """
+    folders = {PACKAGE / "pipeline", PACKAGE / room} if room else {PACKAGE}
+    return sorted({Path(__file__), *(source for folder in folders for source in folder.rglob("*.py"))})
+
+
+def _digest(room: str) -> str:
     """Key of the disk cache: Numba's own key sees neither an edited callee in another file nor the bounds-check switch."""
     digest = hashlib.sha256()
     switches = [os.environ.get(name, "") for name in ("NUMBA_BOUNDSCHECK", "NUMBA_OPT", "NUMBA_DEBUGINFO")]
     digest.update(repr((numba.__version__, llvmlite.__version__, sys.version_info[:2], SERIAL, *switches)).encode())
-    package = Path(__file__).parent
-    for source in sorted(package.rglob("*.py")):
-        if source.relative_to(package).parts[0] in _WITHOUT_KERNELS:
-            continue
-        digest.update(str(source.relative_to(package)).encode())
+    for source in _sources(room):
+        digest.update(str(source.relative_to(PACKAGE)).encode())
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -69,10 +81,11 @@ def _user_cache() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
 
 
-def _cache_directory() -> str:
-    """A writable folder for this very version of the sources; a temporary one where the user's cache is read-only."""
+@cache
+def _cache_directory(room: str) -> str:
+    """A writable folder for this very version of a room's sources; a temporary one where the user's cache is read-only."""
     root = Path(config.CACHE_DIR) if config.CACHE_DIR else _user_cache() / "ibr_ref"
-    folder = root / _digest()
+    folder = root / _digest(room)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -82,12 +95,10 @@ def _cache_directory() -> str:
     return str(folder)
 
 
-_CACHE_DIRECTORY = "" if config.DISABLE_JIT else _cache_directory()
-
-
 def _entry(function: Function, parallel: bool) -> Function:
     before = config.CACHE_DIR
-    config.CACHE_DIR = _CACHE_DIRECTORY  # read while decorating; restored, because other packages read it too
+    # Read while decorating; restored, because other packages read it too.
+    config.CACHE_DIR = "" if config.DISABLE_JIT else _cache_directory(_room(function))
     try:
         compiled = numba.njit(parallel=parallel, error_model="numpy", fastmath=False, cache=True)(function)
     finally:
