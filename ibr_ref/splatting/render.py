@@ -13,13 +13,13 @@ from ibr_ref.pipeline.points import Splats, Target, draw_splats, target_for
 from ibr_ref.scene import Light
 from ibr_ref.splatting import atlas
 from ibr_ref.splatting.buffers import Law, Lighting, Vertices, View, vertices_for
-from ibr_ref.splatting.fragment import resolve
+from ibr_ref.splatting.fragment import clear, resolve
 from ibr_ref.splatting.inputs import Params, Scene
 from ibr_ref.splatting.references import Prepared, prepare, view_of
 from ibr_ref.splatting.vertex import color_vertices, place
 
-BLOCK_POINTS = 1 << 17
-"""Points that are placed and drawn at a time, about: their arrays stay in the cache, and memory does not grow with them."""
+BLOCK_POINTS = 1 << 20
+"""Points that are placed and drawn at a time, about: memory does not grow with their number."""
 
 _BLOCK_ROWS = 4096
 
@@ -47,7 +47,7 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
                 raise ValueError(_unsound(params, i, first_row, last_row))
             draw_splats(Splats(*block), params.shape == "disc", base, target)
     color = np.empty((*target.splat.shape, 3))
-    color[:] = scene.background
+    clear(np.array(scene.background), color)
     for first, reference in zip(starts, references, strict=False):
         resolve(reference.reference, _normals(reference, lighting), lighting, view, first, target.splat, color)
     frame = Frame(color=color, depth=target.depth, stages={})
