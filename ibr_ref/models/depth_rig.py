@@ -36,7 +36,8 @@ def depth_rig(mesh: Mesh, count: int = 9, *, size: int = 192) -> list[DepthImage
     field of view of 40 degrees and stand 3 radii of the sphere around the mesh away from its centre, so that the sphere
     just fits; near and far enclose it. Vertices of no triangle do not count. `depth_image` says what a picture holds.
 
-    The paper's 4, 9 and 16 images have 45,012, 83,521 and 167,980 points in all: about 11,000 an image.
+    The paper's 4, 9 and 16 images have 45,012, 83,521 and 167,980 points in all; `kettle()` has as many, to 1 %, at sizes
+    210, 189 and 201.
 
     Raises ValueError for a mesh that is none or has no extent, and for a count or size that is not allowed.
     """
