@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.models.loft import looped, turn
+from ibr_ref.models.sweep import cross, ellipses, unit
 from ibr_ref.scene import Mesh, checks
 
 _TWICE, _THRICE = 2, 3
@@ -30,21 +31,8 @@ def knot(segments: int = 240, sides: int = 20) -> Mesh:
     center = _RADIUS * np.stack([x, y, np.zeros(segments)], axis=1) + _TUBE * outward
     # The curve lies on the torus, whose normal therefore is normal to it: a frame that closes without a twist.
     tangent = (_TWICE * (_RADIUS + _TUBE * out))[:, None] * around + (_THRICE * _TUBE) * along
-    tangent = tangent / _length(tangent)
-    sideways = _cross(tangent, outward)
-    cosine, sine = turn(sides)[:, :, None, None].transpose(1, 0, 2, 3)
-    rings = center + _CORD * (cosine * outward + sine * sideways)
-    return looped(rings.transpose(1, 0, 2), _hues(segments))
-
-
-def _length(a: NDArray[np.float64]) -> NDArray[np.float64]:
-    length: NDArray[np.float64] = np.sqrt(a[:, :1] * a[:, :1] + a[:, 1:2] * a[:, 1:2] + a[:, 2:] * a[:, 2:])
-    return length
-
-
-def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    (ax, ay, az), (bx, by, bz) = a.T, b.T
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
+    sideways = cross(unit(tangent), outward)
+    return looped(ellipses(center, _CORD * outward, _CORD * sideways, sides), _hues(segments))
 
 
 def _hues(count: int) -> NDArray[np.float64]:

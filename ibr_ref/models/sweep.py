@@ -42,11 +42,11 @@ def tube(path: Array, radii: ArrayLike, across: ArrayLike, sides: int) -> Array:
     radii: (S,), or (S, 2): along `across` x path, and along what is square to both. across: a direction that the path
     never takes.
     """
-    along = _unit(
+    along = unit(
         path[np.minimum(np.arange(len(path)) + 1, len(path) - 1)] - path[np.maximum(np.arange(len(path)) - 1, 0)]
     )
-    first = _unit(_cross(np.broadcast_to(np.asarray(across, np.float64), path.shape), along))
-    second = _cross(along, first)
+    first = unit(cross(np.broadcast_to(np.asarray(across, np.float64), path.shape), along))
+    second = cross(along, first)
     wide, high = np.broadcast_to(np.asarray(radii, np.float64).T, (2, len(path)))[:, :, None]
     return ellipses(path, wide * first, high * second, sides)
 
@@ -57,12 +57,14 @@ def straight(start: ArrayLike, end: ArrayLike, shares: ArrayLike) -> Array:
     return np.asarray(start) * (1.0 - share) + np.asarray(end) * share
 
 
-def _cross(a: Array, b: Array) -> Array:
+def cross(a: Array, b: Array) -> Array:
+    """The cross products of the rows of two arrays (S, 3)."""
     (ax, ay, az), (bx, by, bz) = a.T, b.T
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
 
 
-def _unit(a: Array) -> Array:
+def unit(a: Array) -> Array:
+    """The rows (S, 3), none of them zero, divided by their lengths."""
     x, y, z = a.T
     length: Array = np.sqrt(x * x + y * y + z * z)
     return a / length[:, None]

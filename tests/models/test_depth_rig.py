@@ -21,7 +21,7 @@ from tests.naive.raster import triangle_fragments
 
 Array = NDArray[np.float64]
 
-RIG = "3182367d8d8d88127914b0751fb7abd3d1fe012d04a6ca3ec27584ab634e763d"
+RIG = "42090b1e4bc226c9db2576de92a70f2fd5986f8b4ba15c5f2ec0a457ece50816"
 CUBE = Mesh(
     vertices=[(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)],
     triangles=[
