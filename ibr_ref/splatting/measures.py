@@ -18,7 +18,7 @@ def fit_splat_law(
     images: Sequence[DepthImage],
     camera: Camera,
     *,
-    tau: float = 0.9,
+    tau: float = 0.95,
     min_width: float = 1.0,
     max_width: float = 64.0,
 ) -> SplatLaw:

@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 MOST_SAMPLES = 4000
 """Points that the regression sees, evenly taken from all that are in view."""
 
-GRAZING = 4.0
+GRAZING = 1.5
 """A quad counts with at most this many times the side of one that faces both cameras at the same place. Surfaces that the
 reference saw at a grazing angle stretch without limit in another view; made wide enough for them, all splats at their
 distance would cover each other many times over."""
