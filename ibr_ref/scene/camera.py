@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.scene import axis_angle, checks, look_at
+from ibr_ref.scene import axis_angle, camera_path, checks, look_at
 from ibr_ref.scene.axis_angle import AxisAngle
 from ibr_ref.scene.projection import (
     clip_from_intrinsics,
@@ -241,3 +241,29 @@ class Camera:
         )
         object.__setattr__(camera, "afx", fields)
         return camera
+
+    @classmethod
+    def between(cls, first: Camera, second: Camera, fraction: float) -> Camera:
+        """The camera at a fraction, from 0 to 1, of the way from one to another: 0.5 is the view midway between two.
+
+        Position, intrinsics, near and far are interpolated linearly. So are the quaternions of the orientations, and then
+        normalized, on the shorter arc: fair at 0, 1/2 and 1, and in between up to 1 degree late or early for cameras 90
+        degrees apart. No sine or arc cosine: the same bits on every machine. Between cameras half a turn apart there is
+        no shorter arc; one of the two is taken.
+
+        At 0 and 1 the camera is `first` or `second` itself. In between its rotation is a true one, even if theirs are
+        measured: each is replaced by the nearest true one (its polar factor) first, at a distance, in the Frobenius norm,
+        of about half of |R^T R - I|, hence at most 5.1e-4. That is what the view jumps by on leaving a measured end: 0.02
+        pixels in the pictures of 1024 x 768 of the MSR 3D Video cameras, |R^T R - I| = 1e-4.
+
+        Raises ValueError for a fraction outside [0, 1], and for two cameras that differ in `perspective`, in the size of
+        the picture or in the signs of f_x or f_y, or whose `view_from_world` has no rotation (as in `calibrated`).
+        """
+        for name, camera in (("first", first), ("second", second)):
+            if not isinstance(camera, Camera):
+                raise checks.reject(name, type(camera).__name__, "a Camera")
+        fraction = checks.number("fraction", fraction, low=0.0, high=1.0)
+        camera_path.check_path(first, second)
+        if fraction in (0.0, 1.0):
+            return second if fraction else first
+        return cls(**camera_path.fields_between(first, second, fraction))
