@@ -115,7 +115,7 @@ def command(
             picture.save_stages(stages)
         picture.save(out)
     if report:
-        from ibr_ref.cli.splatting_report import report_lines
+        from ibr_ref.cli.view_quality import report_lines
 
         typer.echo("\n".join(report_lines(scene, params, picture, photograph)))
 

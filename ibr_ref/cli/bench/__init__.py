@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ibr_ref.cli.bench import displacement, splatting
+from ibr_ref.cli.bench import displacement, splatting, splatting_quality
 
 EXAMPLES = """
 Examples:
@@ -54,6 +54,9 @@ def command(
     if method in (Method.all, Method.splatting):
         figures["splatting"] = splatting.times(repeat, msr)
         console.print(splatting.table(figures["splatting"]))
+        if msr is not None:
+            figures["splatting_quality"] = splatting_quality.views(msr)
+            console.print(splatting_quality.table(figures["splatting_quality"]))
     if json is not None:
         _write(json, figures)
 
