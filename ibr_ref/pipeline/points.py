@@ -77,38 +77,43 @@ def span(center, width, size):
 
 
 @device
-def _rows(splats, i, columns, rows):
-    """The rows [first, stop) that a splat covers anything in."""
-    width = splats.width[i]
-    first, stop = span(snapped(splats.window[i, 0]), width, columns)
-    if first >= stop:
-        return np.int64(0), np.int64(0)
-    return span(snapped(splats.window[i, 1]), width, rows)
+def covers(disc, column, row, x, y, width):
+    """Whether a disc covers a pixel of its square; a square covers them all."""
+    dx, dy = column + 0.5 - x, row + 0.5 - y
+    return (not disc) | (dx * dx + dy * dy <= width * width / 4.0)
 
 
 @device
-def _count_part(splats, first, last, columns, rows, counts):
+def _rows(x, y, width, columns, rows):
+    """The rows [first, stop) that a splat covers anything in."""
+    first, stop = span(snapped(x), width, columns)
+    if first >= stop:
+        return np.int64(0), np.int64(0)
+    return span(snapped(y), width, rows)
+
+
+@device
+def _count_part(window, width, first, last, columns, rows, counts):
     for i in range(first, last):
-        top, stop = _rows(splats, i, columns, rows)
+        top, stop = _rows(window[i, 0], window[i, 1], width[i], columns, rows)
         if top < stop:
             for band in range(top // BAND_ROWS, (stop - 1) // BAND_ROWS + 1):
                 counts[band] += 1
 
 
 @kernel
-def _count(splats, columns, rows, counts):
+def _count(window, width, columns, rows, counts):
     """Splats of each part of the list that each band has a share in: counts (parts, bands)."""
     parts = len(counts)
-    chunk = (len(splats.depth) + parts - 1) // parts
+    chunk = (len(width) + parts - 1) // parts
     for part in prange(parts):
-        last = min(len(splats.depth), (part + 1) * chunk)
-        _count_part(splats, part * chunk, last, columns, rows, counts[part])
+        _count_part(window, width, part * chunk, min(len(width), (part + 1) * chunk), columns, rows, counts[part])
 
 
 @device
-def _sort_part(splats, first, last, columns, rows, ends, members):
+def _sort_part(window, width, first, last, columns, rows, ends, members):
     for i in range(first, last):
-        top, stop = _rows(splats, i, columns, rows)
+        top, stop = _rows(window[i, 0], window[i, 1], width[i], columns, rows)
         if top < stop:
             for band in range(top // BAND_ROWS, (stop - 1) // BAND_ROWS + 1):
                 members[ends[band]] = i
@@ -116,47 +121,59 @@ def _sort_part(splats, first, last, columns, rows, ends, members):
 
 
 @kernel
-def _sort(splats, columns, rows, ends, members):
+def _sort(window, width, columns, rows, ends, members):
     """Members of each band, in order; `ends` (parts, bands): where each part's share starts, moved to its end."""
     parts = len(ends)
-    chunk = (len(splats.depth) + parts - 1) // parts
+    chunk = (len(width) + parts - 1) // parts
     for part in prange(parts):
-        last = min(len(splats.depth), (part + 1) * chunk)
-        _sort_part(splats, part * chunk, last, columns, rows, ends[part], members)
+        last = min(len(width), (part + 1) * chunk)
+        _sort_part(window, width, part * chunk, last, columns, rows, ends[part], members)
 
 
 @device
-def _draw_pixel(target, row, column, splat, depth):
-    """Depth test of one splat on one pixel, and what the stages note of it."""
+def _draw_band(window, depths, widths, members, disc, first_row, last_row, base, splat, depth):
+    """Draw the members of a band, in order, into its rows [first_row, last_row)."""
+    columns, rows = np.float64(splat.shape[1]), np.float64(splat.shape[0])
+    for i in members:
+        x, y, width, z = snapped(window[i, 0]), snapped(window[i, 1]), widths[i], depths[i]
+        left, right = span(x, width, columns)
+        top, stop = span(y, width, rows)
+        for row in range(max(top, first_row), min(stop, last_row)):
+            for column in range(left, right):
+                if covers(disc, column, row, x, y, width) and passes(z, depth[row, column]):
+                    depth[row, column] = z
+                    splat[row, column] = np.int32(base + i)
+
+
+@device
+def _note_band(window, depths, widths, members, disc, first_row, last_row, depth, overdraw, second):
+    """Before a band is drawn, note for the stages how many of its members cover each pixel, and the second-nearest of all.
+
+    `depth` holds the nearest so far, a copy of the buffer's rows.
+    """
+    columns, rows = np.float64(overdraw.shape[1]), np.float64(overdraw.shape[0])
+    for i in members:
+        x, y, width, z = snapped(window[i, 0]), snapped(window[i, 1]), widths[i], depths[i]
+        left, right = span(x, width, columns)
+        top, stop = span(y, width, rows)
+        for row in range(max(top, first_row), min(stop, last_row)):
+            for column in range(left, right):
+                if covers(disc, column, row, x, y, width):
+                    nearest = depth[row - first_row, column]
+                    if overdraw[row, column] > 0:
+                        second[row, column] = min(second[row, column], max(z, nearest))
+                    overdraw[row, column] += 1
+                    depth[row - first_row, column] = min(z, nearest)
+
+
+@device
+def _draw_one(splats, members, disc, first_row, base, target):
+    last_row = min(target.splat.shape[0], first_row + BAND_ROWS)
+    window, depths, widths = splats
     if len(target.overdraw) > 0:
-        if target.overdraw[row, column] > 0:
-            behind = max(depth, target.depth[row, column])
-            target.second[row, column] = min(target.second[row, column], behind)
-        target.overdraw[row, column] += 1
-    if passes(depth, target.depth[row, column]):
-        target.depth[row, column] = depth
-        target.splat[row, column] = splat
-
-
-@device
-def _draw_splat(splats, i, disc, first_row, last_row, base, target):
-    """Draw one splat into the rows [first_row, last_row) of the picture."""
-    x, y, width, depth = snapped(splats.window[i, 0]), snapped(splats.window[i, 1]), splats.width[i], splats.depth[i]
-    left, right = span(x, width, np.float64(target.splat.shape[1]))
-    top, stop = span(y, width, np.float64(target.splat.shape[0]))
-    splat = np.int32(base + i)
-    for row in range(max(top, first_row), min(stop, last_row)):
-        dy = row + 0.5 - y
-        for column in range(left, right):
-            dx = column + 0.5 - x
-            if not disc or dx * dx + dy * dy <= width * width / 4.0:
-                _draw_pixel(target, row, column, splat, depth)
-
-
-@device
-def _draw_band(splats, members, disc, first_row, last_row, base, target):
-    for member in range(len(members)):
-        _draw_splat(splats, members[member], disc, first_row, last_row, base, target)
+        nearest = target.depth[first_row:last_row].copy()
+        _note_band(window, depths, widths, members, disc, first_row, last_row, nearest, target.overdraw, target.second)
+    _draw_band(window, depths, widths, members, disc, first_row, last_row, base, target.splat, target.depth)
 
 
 @kernel
@@ -168,8 +185,7 @@ def _draw(splats, members, starts, disc, base, target):
         stride += 1
     for turn in prange(bands):
         band = (turn * stride) % bands
-        last_row = min(target.splat.shape[0], (band + 1) * BAND_ROWS)
-        _draw_band(splats, members[starts[band] : starts[band + 1]], disc, band * BAND_ROWS, last_row, base, target)
+        _draw_one(splats, members[starts[band] : starts[band + 1]], disc, band * BAND_ROWS, base, target)
 
 
 def draw_splats(splats: Splats, disc: bool, base: int, target: Target) -> None:
@@ -177,9 +193,9 @@ def draw_splats(splats: Splats, disc: bool, base: int, target: Target) -> None:
     rows, columns = target.splat.shape
     bands = -(-rows // BAND_ROWS)
     counts = np.zeros((_PARTS, bands), np.int64)
-    _count(splats, float(columns), float(rows), counts)
+    _count(splats.window, splats.width, float(columns), float(rows), counts)
     ends = np.cumsum(counts.T).reshape(bands, _PARTS).T  # band by band, in each the parts in order
     starts = np.append(ends[0] - counts[0], ends[-1, -1])
     members = np.empty(int(starts[-1]), np.int32)
-    _sort(splats, float(columns), float(rows), np.ascontiguousarray(ends - counts), members)
+    _sort(splats.window, splats.width, float(columns), float(rows), np.ascontiguousarray(ends - counts), members)
     _draw(splats, members, starts, disc, base, target)

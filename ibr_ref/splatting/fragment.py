@@ -11,18 +11,38 @@ from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.splatting.buffers import Lighting, Reference, View
-from ibr_ref.splatting.vertex import vertex_color
+from ibr_ref.splatting.vertex import color_pixels
 
 
 @device
-def _resolve_row(reference, normals, lighting, eye, first, winners, colors):
-    count = len(reference.pixels)
+def _resolve_row(reference, normals, lighting, eye, first, winners, color):
+    """The winners of this image in a row of the picture are gathered, coloured together, and put where they are seen."""
+    pixels, count = reference.pixels, len(reference.pixels)
+    seen, columns = np.empty(len(winners), np.int32), np.empty(len(winners), np.int32)
+    shown = 0
     for column in range(len(winners)):
         i = winners[column] - first
         if 0 <= i < count:
-            colors[column, 0], colors[column, 1], colors[column, 2] = vertex_color(
-                reference, normals, lighting, eye, reference.pixels[i]
-            )
+            seen[shown], columns[shown] = pixels[i], column
+            shown += 1
+    colors = np.empty((shown, 3))
+    color_pixels(reference, normals, lighting, eye, seen[:shown], colors)
+    for i in range(shown):
+        column = columns[i]
+        color[column, 0], color[column, 1], color[column, 2] = colors[i, 0], colors[i, 1], colors[i, 2]
+
+
+@device
+def _clear_row(background, color):
+    for column in range(len(color)):
+        color[column, 0], color[column, 1], color[column, 2] = background[0], background[1], background[2]
+
+
+@kernel
+def clear(background, color):
+    """The background (3,) everywhere in the picture (H, W, 3)."""
+    for row in prange(len(color)):
+        _clear_row(background, color[row])
 
 
 @kernel

@@ -13,7 +13,7 @@ from ibr_ref.pipeline.points import Splats, Target, draw_splats, target_for
 from ibr_ref.scene import Light
 from ibr_ref.splatting import atlas
 from ibr_ref.splatting.buffers import Law, Lighting, Vertices, View, vertices_for
-from ibr_ref.splatting.fragment import resolve
+from ibr_ref.splatting.fragment import clear, resolve
 from ibr_ref.splatting.inputs import Params, Scene
 from ibr_ref.splatting.references import Prepared, prepare, view_of
 from ibr_ref.splatting.vertex import color_vertices, place
@@ -37,21 +37,21 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
     view, law, lighting = view_of(scene.camera), _law(params), _lighting(scene.light)
     target = target_for(scene.camera.width, scene.camera.height, stages)
     starts = np.cumsum([0] + [reference.points for reference in references]).tolist()
-    vertices = vertices_for(starts[-1]) if stages else None
-    for i, reference in enumerate(references):
-        for first_row, last_row in _blocks(reference):
-            base = starts[i] + int(reference.reference.row_starts[first_row])
-            count = starts[i] + int(reference.reference.row_starts[last_row]) - base
-            block = vertices_for(count) if vertices is None else Vertices(*(a[base : base + count] for a in vertices))
-            if not place(reference.reference, view, law, first_row, last_row, block):
-                raise ValueError(_unsound(params, i, first_row, last_row))
-            draw_splats(Splats(*block), params.shape == "disc", base, target)
+    blocks = [(i, *rows) for i, reference in enumerate(references) for rows in _blocks(reference)]
+    vertices = vertices_for(starts[-1] if stages else max(_points(references[i], *rows) for i, *rows in blocks))
+    for i, first_row, last_row in blocks:
+        reference, count = references[i].reference, _points(references[i], first_row, last_row)
+        base = starts[i] + int(reference.row_starts[first_row])
+        block = Vertices(*(array[base : base + count] if stages else array[:count] for array in vertices))
+        if not place(reference, view, law, first_row, last_row, block):
+            raise ValueError(_unsound(params, i, first_row, last_row))
+        draw_splats(Splats(*block), params.shape == "disc", base, target)
     color = np.empty((*target.splat.shape, 3))
-    color[:] = scene.background
-    for first, reference in zip(starts, references, strict=False):
-        resolve(reference.reference, _normals(reference, lighting), lighting, view, first, target.splat, color)
+    clear(np.array(scene.background), color)
+    for first, prepared in zip(starts, references, strict=False):
+        resolve(prepared.reference, _normals(prepared, lighting), lighting, view, first, target.splat, color)
     frame = Frame(color=color, depth=target.depth, stages={})
-    if vertices is not None:
+    if stages:
         frame.stages.update(_atlas_stages(references, rects))
         frame.stages.update(_vertex_stages(references, starts, vertices, lighting, view))
         frame.stages.update(_raster_stages(target))
@@ -83,6 +83,12 @@ def _blocks(reference: Prepared) -> Iterator[tuple[int, int]]:
         if row_starts[stop] > row_starts[row]:
             yield row, stop
         row = stop
+
+
+def _points(reference: Prepared, first_row: int, last_row: int) -> int:
+    """Points of a range of image rows."""
+    row_starts = reference.reference.row_starts
+    return int(row_starts[last_row] - row_starts[first_row])
 
 
 def _unsound(params: Params, image: int, first_row: int, last_row: int) -> str:

@@ -12,7 +12,7 @@ from ibr_ref.jit import LANES, device, kernel, prange
 from ibr_ref.pipeline.lighting import lit_channel, phong
 from ibr_ref.splatting.buffers import Law, Lighting, Reference, Vertices, View
 from ibr_ref.splatting.normals import decoded
-from ibr_ref.splatting.unproject import normalized_x, normalized_y, transform, view_point, world_point
+from ibr_ref.splatting.unproject import normalized_x, normalized_y, transform, view_point
 
 _PARTS = 32  # into which a block of image rows is cut, for the threads
 
@@ -47,7 +47,7 @@ def _place_wave(reference, view, law, row, first, count, base, vertices):
     c = view.clip_from_view
     c0, c1, c2, c3 = _row(c, 0), _row(c, 1), _row(c, 2), _row(c, 3)
     eye_x, eye_y, eye_z = view.eye[0], view.eye[1], view.eye[2]
-    y_n = normalized_y(reference.intrinsics, row)
+    y_n = normalized_y(reference.intrinsics[1, 1], reference.intrinsics[1, 2], row)
     f_x, skew, center_x = reference.intrinsics[0, 0], reference.intrinsics[0, 1], reference.intrinsics[0, 2]
     start = np.int32(row * reference.columns)
     x_n, depth, x, y, z = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
@@ -119,26 +119,43 @@ def place(reference: Reference, view: View, law: Law, first_row: int, last_row: 
 
 
 @device
-def vertex_color(reference, normals, lighting, eye, pixel):
-    """Colour of a reference pixel's point: lit by its 8-bit normal, or as it is stored."""
-    r, g, b = reference.color[pixel, 0], reference.color[pixel, 1], reference.color[pixel, 2]
-    if not lighting.lit:
-        return r, g, b
-    x, y, z = world_point(reference, pixel)
-    nx, ny, nz = decoded(normals, pixel)
+def _light_pixels(reference, normals, lighting, eye_array, pixels, colors):
+    """Phong with the stored colour as albedo and the 8-bit normal."""
+    albedo, depth, perspective, width = reference.color, reference.depth, reference.perspective, reference.columns
+    k, m = reference.intrinsics, reference.world_from_view
+    m0, m1, m2 = _row(m, 0), _row(m, 1), _row(m, 2)
+    light = (lighting.light[0], lighting.light[1], lighting.light[2], lighting.light[3])
+    eye = (eye_array[0], eye_array[1], eye_array[2], eye_array[3])
     ambient, diffuse, specular = lighting.phong[0], lighting.phong[1], lighting.phong[2]
-    bright, shine, _ = phong(lighting.light, eye, x, y, z, nx, ny, nz, diffuse, specular, lighting.exponent, 1.0)
-    return (
-        lit_channel(r, ambient, bright, shine),
-        lit_channel(g, ambient, bright, shine),
-        lit_channel(b, ambient, bright, shine),
-    )
+    for i in range(len(pixels)):
+        pixel = pixels[i]
+        row = pixel // width
+        y_n = normalized_y(k[1, 1], k[1, 2], row)
+        x_n = normalized_x(k[0, 0], k[0, 1], k[0, 2], pixel - row * width, y_n)
+        p_x, p_y, p_z = view_point(perspective, x_n, y_n, depth[pixel])
+        x, y, z = transform(m0, p_x, p_y, p_z), transform(m1, p_x, p_y, p_z), transform(m2, p_x, p_y, p_z)
+        nx, ny, nz = decoded(normals[pixel, 0], normals[pixel, 1], normals[pixel, 2])
+        bright, shine, _ = phong(light, eye, x, y, z, nx, ny, nz, diffuse, specular, lighting.exponent, 1.0)
+        for channel in range(3):
+            colors[i, channel] = lit_channel(albedo[pixel, channel], ambient, bright, shine)
+
+
+@device
+def color_pixels(reference, normals, lighting, eye, pixels, colors):
+    """Colours (n, 3) of the points of some pixels (n,) of a reference image: lit, or as they are stored."""
+    if lighting.lit:
+        _light_pixels(reference, normals, lighting, eye, pixels, colors)
+        return
+    stored = reference.color
+    for i in range(len(pixels)):
+        pixel = pixels[i]
+        colors[i, 0], colors[i, 1], colors[i, 2] = stored[pixel, 0], stored[pixel, 1], stored[pixel, 2]
 
 
 @device
 def _color_row(reference, normals, lighting, eye, row, colors):
-    for i in range(reference.row_starts[row], reference.row_starts[row + 1]):
-        colors[i, 0], colors[i, 1], colors[i, 2] = vertex_color(reference, normals, lighting, eye, reference.pixels[i])
+    first, stop = reference.row_starts[row], reference.row_starts[row + 1]
+    color_pixels(reference, normals, lighting, eye, reference.pixels[first:stop], colors[first:stop])
 
 
 @kernel
