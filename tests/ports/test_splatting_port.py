@@ -1,4 +1,4 @@
-"""The GLSL port on a real OpenGL, against the reference: numbers within what float32 may do, decisions equal where it may not."""
+"""The GLSL port of splatting on a real OpenGL, against the reference: equal wherever float32 cannot turn a decision."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def test_winners_agree_where_decided(port: Port, primitive: str, shape: str, vie
     drawn = port.render(described, law(shape), normals=codes, primitive=primitive)
     bounds = vertex_bounds(described, law(shape), codes)
     undecided = undecided_pixels(bounds, frame.stages, shape, SNAPPED_TWICE)
-    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.7)
+    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
 
 
 @pytest.mark.parametrize("primitive", ["points", "quads"])
@@ -188,7 +188,7 @@ def test_quads_of_constant_width_leave_only_the_snapping_of_centres_open(port: P
     drawn = port.render(described, constant(width), primitive="quads", normals=codes)
     bounds = vertex_bounds(described, constant(width), codes)
     undecided = undecided_pixels(bounds, frame.stages, "square", slack=0.0)
-    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.9)
+    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
 
 
 @pytest.mark.parametrize("width", [1.0 + 1.0 / 256.0, 2.0 + 1.0 / 256.0, 3.0 - 1.0 / 256.0])
@@ -199,7 +199,7 @@ def test_sprites_of_widths_between_the_steps_have_no_border_on_a_centre(port: Po
     drawn = port.render(described, constant(width), normals=codes)
     bounds = vertex_bounds(described, constant(width), codes)
     undecided = undecided_pixels(bounds, frame.stages, "square", SNAPPED_TWICE)
-    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.7)
+    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
 
 
 def test_the_half_open_rule_where_every_border_is_on_a_pixel_centre(port: Port) -> None:
@@ -229,7 +229,7 @@ def test_a_splat_whose_centre_is_outside_reaches_in(port: Port) -> None:
     assert ((window < 0.0) | (window > [40.0, 32.0])).any(), "no winner has its centre outside: the test says nothing"
     for primitive in ("points", "quads"):
         drawn = port.render(described, wide, primitive=primitive)
-        assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.9)
+        assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
 
 
 def test_normals_made_in_numpy_are_the_reference_s() -> None:
@@ -256,7 +256,7 @@ def test_a_broken_port_is_noticed(port: Port) -> None:
     much_wider = splatting.Params(alpha=1.1, beta=0.01, gamma=0.02, delta=0.12)
     drawn = port.render(described, much_wider, normals=codes)
     with pytest.raises(AssertionError):
-        assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.7)
+        assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
 
 
 def test_what_is_not_ported_is_refused(port: Port) -> None:
