@@ -41,8 +41,8 @@ splat covers a pixel, the winner is -1, the depth 1, the margin infinite. The st
   faces both cameras would need there: grazing surfaces stretch without limit. `size_law.py` says more.
 
 **For ports**: a GL port that flips the rows on read-back turns the half-open rule of the squares upside down; one that
-negates clip y agrees. Point sprites clamp widths, may snap them, and are culled by their centre; quads do not. The 8-bit normals
-are also an input: hand your port ours (`atlas.normal`), and judge its own by interval.
+negates clip y agrees. Point sprites clamp widths, may snap them, and are culled by their centre; quads do not. The normals
+are also an input: hand your port ours (`atlas.normal`, 8 bits), and judge its own by interval.
 """
 
 from ibr_ref.splatting.coverage import Coverage
