@@ -72,8 +72,10 @@ class Lighting(NamedTuple):
 class Vertices(NamedTuple):
     """Stage vertex: where the points land, in order of (image, row, column). A dropped one: NaN, and width 0."""
 
-    window: Floats
-    """(V, 2) pixels."""
+    x: Floats
+    """(V,) window, pixels."""
+    y: Floats
+    """(V,) window, pixels, downwards."""
     depth: Floats
     """(V,) window depth."""
     width: Floats
@@ -82,4 +84,4 @@ class Vertices(NamedTuple):
 
 def vertices_for(count: int) -> Vertices:
     """Room for so many points."""
-    return Vertices(np.empty((count, 2)), np.empty(count), np.empty(count))
+    return Vertices(np.empty(count), np.empty(count), np.empty(count), np.empty(count))

@@ -11,25 +11,44 @@ from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.splatting.buffers import Lighting, Reference, View
-from ibr_ref.splatting.vertex import color_pixels
+from ibr_ref.splatting.vertex import light_pixels
 
 
 @device
-def _resolve_row(reference, normals, lighting, eye, first, winners, color):
-    """The winners of this image in a row of the picture are gathered, coloured together, and put where they are seen."""
+def _resolve_stored(stored, pixels, first, winners, color):
+    """Without a light the winners of this image in a row of the picture have its own colours."""
+    count = len(pixels)
+    for column in range(len(winners)):
+        i = winners[column] - first
+        if 0 <= i < count:
+            pixel = np.uint32(pixels[np.uint32(i)])
+            color[column, 0], color[column, 1], color[column, 2] = stored[pixel, 0], stored[pixel, 1], stored[pixel, 2]
+
+
+@device
+def _resolve_lit(reference, normals, lighting, eye, first, winners, color):
+    """The winners of this image in a row of the picture are gathered, lit together, and put where they are seen."""
     pixels, count = reference.pixels, len(reference.pixels)
     seen, columns = np.empty(len(winners), np.int32), np.empty(len(winners), np.int32)
     shown = 0
     for column in range(len(winners)):
         i = winners[column] - first
         if 0 <= i < count:
-            seen[shown], columns[shown] = pixels[i], column
+            seen[shown], columns[shown] = pixels[np.uint32(i)], column
             shown += 1
     colors = np.empty((shown, 3))
-    color_pixels(reference, normals, lighting, eye, seen[:shown], colors)
+    light_pixels(reference, normals, lighting, eye, seen[:shown], colors)
     for i in range(shown):
         column = columns[i]
         color[column, 0], color[column, 1], color[column, 2] = colors[i, 0], colors[i, 1], colors[i, 2]
+
+
+@device
+def _resolve_row(reference, normals, lighting, eye, first, winners, color):
+    if lighting.lit:
+        _resolve_lit(reference, normals, lighting, eye, first, winners, color)
+    else:
+        _resolve_stored(reference.color, reference.pixels, first, winners, color)
 
 
 @device

@@ -146,7 +146,7 @@ def _vertex_stages(
         source[part, 0] = i
         np.divmod(reference.reference.pixels, reference.reference.columns, out=(source[part, 1], source[part, 2]))
     return {
-        "vertex.window": vertices.window,
+        "vertex.window": np.stack([vertices.x, vertices.y], axis=1),
         "vertex.depth": vertices.depth,
         "vertex.width": vertices.width,
         "vertex.color": colors,

@@ -1,7 +1,4 @@
-"""Stage vertex: every valid reference pixel becomes a point, placed in the window, given a width, and lit (section 3.3).
-
-Points run in waves of up to LANES pixels of one image row: without branches, so that LLVM turns the loops into SIMD.
-"""
+"""Stage vertex: every valid reference pixel becomes a point, placed in the window, given a width, and lit (section 3.3)."""
 
 from __future__ import annotations
 
@@ -20,10 +17,11 @@ _PARTS = 32  # into which a block of image rows is cut, for the threads
 @device
 def splat_width(law, d):
     """W_s at the distance d, clamped, and the law's denominator there."""
-    denominator = law.beta * (d * d) + law.gamma * d + law.delta
-    width = law.alpha / denominator
-    width = width if width < law.most else law.most
-    return (width if width > law.least else law.least), denominator
+    alpha, beta, gamma, delta, least, most = law
+    denominator = beta * (d * d) + gamma * d + delta
+    width = alpha / denominator
+    width = width if width < most else most
+    return (width if width > least else least), denominator
 
 
 @device
@@ -33,72 +31,77 @@ def _row(matrix, i):
 
 
 @device
-def _project(row, x, y, z, w):
-    return row[0] * x + row[1] * y + row[2] * z + row[3] * w
+def transform4(row0, row1, row2, row3, x, y, z, w):
+    """A (4, 4) matrix, by rows, applied to (x, y, z, w); w = 1 leaves the products of the last column exact."""
+    return (
+        row0[0] * x + row0[1] * y + row0[2] * z + row0[3] * w,
+        row1[0] * x + row1[1] * y + row1[2] * z + row1[3] * w,
+        row2[0] * x + row2[1] * y + row2[2] * z + row2[3] * w,
+        row3[0] * x + row3[1] * y + row3[2] * z + row3[3] * w,
+    )
 
 
 @device
-def _place_wave(reference, view, law, row, first, count, base, vertices):
-    """Place up to LANES points of an image row; whether the law has a positive denominator for all of them."""
-    m = reference.world_from_view
-    m0, m1, m2 = _row(m, 0), _row(m, 1), _row(m, 2)
-    v = view.view_from_world
-    v0, v1, v2, v3 = _row(v, 0), _row(v, 1), _row(v, 2), _row(v, 3)
-    c = view.clip_from_view
-    c0, c1, c2, c3 = _row(c, 0), _row(c, 1), _row(c, 2), _row(c, 3)
-    eye_x, eye_y, eye_z = view.eye[0], view.eye[1], view.eye[2]
-    y_n = normalized_y(reference.intrinsics[1, 1], reference.intrinsics[1, 2], row)
-    f_x, skew, center_x = reference.intrinsics[0, 0], reference.intrinsics[0, 1], reference.intrinsics[0, 2]
-    start = np.int32(row * reference.columns)
-    x_n, depth, x, y, z = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    window_x, window_y, window_z = np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    width, flaw = np.empty(LANES), np.empty(LANES)
+def distance(eye, p):
+    """From the eye to a point."""
+    x, y, z = p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]
+    return np.sqrt(x * x + y * y + z * z)
+
+
+@device
+def _store(window_x, window_y, window_z, width, count, first, vertices):
+    """Copy a wave's lanes to their vertices."""
+    xs, ys, depths, widths = vertices
     for lane in range(count):
-        pixel = reference.pixels[first + lane]
-        depth[lane] = reference.depth[pixel]
-        x_n[lane] = np.float64(pixel - start)
-    for lane in range(count):
-        p_x, p_y, p_z = view_point(
-            reference.perspective, normalized_x(f_x, skew, center_x, x_n[lane], y_n), y_n, depth[lane]
-        )
-        x[lane] = transform(m0, p_x, p_y, p_z)
-        y[lane] = transform(m1, p_x, p_y, p_z)
-        z[lane] = transform(m2, p_x, p_y, p_z)
-    for lane in range(count):
-        p_x, p_y, p_z = x[lane], y[lane], z[lane]
-        view_x, view_y = transform(v0, p_x, p_y, p_z), transform(v1, p_x, p_y, p_z)
-        view_z, view_w = transform(v2, p_x, p_y, p_z), transform(v3, p_x, p_y, p_z)
-        clip_x, clip_y = _project(c0, view_x, view_y, view_z, view_w), _project(c1, view_x, view_y, view_z, view_w)
-        clip_z, clip_w = _project(c2, view_x, view_y, view_z, view_w), _project(c3, view_x, view_y, view_z, view_w)
-        kept = (clip_w > 0.0) & (clip_z >= 0.0) & (clip_z <= clip_w)
-        q_x, q_y, q_z = p_x - eye_x, p_y - eye_y, p_z - eye_z
-        d = np.sqrt(q_x * q_x + q_y * q_y + q_z * q_z) if view.perspective else -view_z
-        w, denominator = splat_width(law, d)
-        window_x[lane] = (clip_x / clip_w + 1.0) / 2.0 * view.width if kept else np.nan
-        window_y[lane] = (1.0 - clip_y / clip_w) / 2.0 * view.height if kept else np.nan
-        window_z[lane] = clip_z / clip_w if kept else np.nan
-        width[lane] = w if kept else 0.0
-        flaw[lane] = 1.0 if kept & (not denominator > 0.0) else 0.0
-    flaws = 0.0
-    for lane in range(count):
-        i = first + lane - base
-        vertices.window[i, 0] = window_x[lane]
-        vertices.window[i, 1] = window_y[lane]
-        vertices.depth[i] = window_z[lane]
-        vertices.width[i] = width[lane]
-        flaws += flaw[lane]
-    return flaws == 0.0
+        xs[first + lane], ys[first + lane] = window_x[lane], window_y[lane]
+        depths[first + lane], widths[first + lane] = window_z[lane], width[lane]
 
 
 @device
 def _place_rows(reference, view, law, first_row, last_row, base, vertices):
-    sound = True
+    """Place the points of the image rows [first_row, last_row); whether the law has a positive denominator for all.
+
+    The loops over lanes have no branches, and write to arrays that are made here: LLVM turns them into SIMD.
+    """
+    m, v, c, k = reference.world_from_view, view.view_from_world, view.clip_from_view, reference.intrinsics
+    m0, m1, m2 = _row(m, 0), _row(m, 1), _row(m, 2)
+    v0, v1, v2, v3 = _row(v, 0), _row(v, 1), _row(v, 2), _row(v, 3)
+    c0, c1, c2, c3 = _row(c, 0), _row(c, 1), _row(c, 2), _row(c, 3)
+    eye = (view.eye[0], view.eye[1], view.eye[2])
+    f_x, skew, center_x, f_y, center_y = k[0, 0], k[0, 1], k[0, 2], k[1, 1], k[1, 2]
+    pixels, depths, row_starts = reference.pixels, reference.depth, reference.row_starts
+    depth, x_n, x, y, z = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
+    window_x, window_y, window_z = np.empty(LANES), np.empty(LANES), np.empty(LANES)
+    width, flaw, flaws = np.empty(LANES), np.empty(LANES), 0.0
     for row in range(first_row, last_row):
-        stop = reference.row_starts[row + 1]
-        for first in range(reference.row_starts[row], stop, LANES):
-            count = min(LANES, stop - first)
-            sound &= _place_wave(reference, view, law, row, first, count, base, vertices)
-    return sound
+        y_n, start = normalized_y(f_y, center_y, row), np.int32(row * reference.columns)
+        for first in range(row_starts[row], row_starts[row + 1], LANES):
+            count = min(LANES, row_starts[row + 1] - first)
+            for lane in range(count):
+                pixel = pixels[first + lane]
+                depth[lane] = depths[pixel]
+                x_n[lane] = normalized_x(f_x, skew, center_x, np.float64(pixel - start), y_n)
+            for lane in range(count):
+                p_x, p_y, p_z = view_point(reference.perspective, x_n[lane], y_n, depth[lane])
+                x[lane] = transform(m0, p_x, p_y, p_z)
+                y[lane] = transform(m1, p_x, p_y, p_z)
+                z[lane] = transform(m2, p_x, p_y, p_z)
+            for lane in range(count):
+                p = (x[lane], y[lane], z[lane])
+                view_x, view_y, view_z, view_w = transform4(v0, v1, v2, v3, p[0], p[1], p[2], 1.0)
+                clip_x, clip_y, clip_z, clip_w = transform4(c0, c1, c2, c3, view_x, view_y, view_z, view_w)
+                kept = (clip_w > 0.0) & (clip_z >= 0.0) & (clip_z <= clip_w)
+                d = distance(eye, p) if view.perspective else -view_z
+                w, denominator = splat_width(law, d)
+                window_x[lane] = (clip_x / clip_w + 1.0) / 2.0 * view.width if kept else np.nan
+                window_y[lane] = (1.0 - clip_y / clip_w) / 2.0 * view.height if kept else np.nan
+                window_z[lane] = clip_z / clip_w if kept else np.nan
+                width[lane] = w if kept else 0.0
+                flaw[lane] = 1.0 if kept & (not denominator > 0.0) else 0.0
+            for lane in range(count):
+                flaws += flaw[lane]
+            _store(window_x, window_y, window_z, width, count, first - base, vertices)
+    return flaws == 0.0
 
 
 @kernel
@@ -119,8 +122,8 @@ def place(reference: Reference, view: View, law: Law, first_row: int, last_row: 
 
 
 @device
-def _light_pixels(reference, normals, lighting, eye_array, pixels, colors):
-    """Phong with the stored colour as albedo and the 8-bit normal."""
+def light_pixels(reference, normals, lighting, eye_array, pixels, colors):
+    """Colours (n, 3) of the points of some pixels (n,) of a reference image: Phong with its colour and 8-bit normal."""
     albedo, depth, perspective, width = reference.color, reference.depth, reference.perspective, reference.columns
     k, m = reference.intrinsics, reference.world_from_view
     m0, m1, m2 = _row(m, 0), _row(m, 1), _row(m, 2)
@@ -141,21 +144,15 @@ def _light_pixels(reference, normals, lighting, eye_array, pixels, colors):
 
 
 @device
-def color_pixels(reference, normals, lighting, eye, pixels, colors):
-    """Colours (n, 3) of the points of some pixels (n,) of a reference image: lit, or as they are stored."""
-    if lighting.lit:
-        _light_pixels(reference, normals, lighting, eye, pixels, colors)
-        return
-    stored = reference.color
-    for i in range(len(pixels)):
-        pixel = pixels[i]
-        colors[i, 0], colors[i, 1], colors[i, 2] = stored[pixel, 0], stored[pixel, 1], stored[pixel, 2]
-
-
-@device
 def _color_row(reference, normals, lighting, eye, row, colors):
     first, stop = reference.row_starts[row], reference.row_starts[row + 1]
-    color_pixels(reference, normals, lighting, eye, reference.pixels[first:stop], colors[first:stop])
+    pixels, stored = reference.pixels[first:stop], reference.color
+    if lighting.lit:
+        light_pixels(reference, normals, lighting, eye, pixels, colors[first:stop])
+        return
+    for i in range(len(pixels)):
+        for channel in range(3):
+            colors[first + i, channel] = stored[pixels[i], channel]
 
 
 @kernel

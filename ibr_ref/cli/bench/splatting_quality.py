@@ -91,9 +91,9 @@ def table(rows: list[dict[str, Any]]) -> Any:
         )
         if "won_by_0" in row:
             result.caption = (
-                f"With both, camera 0 wins {100 * row['won_by_0']:.1f} % of the pixels of camera 1's own picture: the depth codes of "
-                "both stand for the same planes of the world, so that the points of one surface all but tie, and the nearer "
-                f"wins. They stand {100 * row['median_lead']:.4f} % of the depth before camera 1's own in the median, and "
-                f"{100 * row['lead_below_2_percent']:.1f} % of them less than 2 %; a step of the code is about 0.5 %."
+                f"With both, camera 0 wins {100 * row['won_by_0']:.1f} % of the pixels of camera 1's own picture: their "
+                "depth codes stand for the same planes of the world, so that points of one surface all but tie, and the "
+                f"nearer wins. Camera 0's stand {100 * row['median_lead']:.4f} % of the depth before camera 1's own in the "
+                f"median, {100 * row['lead_below_2_percent']:.1f} % of them less than 2 %; a step of the code is 0.5 %."
             )
     return result
