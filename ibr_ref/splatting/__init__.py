@@ -47,8 +47,8 @@ are also an input: hand your port ours (`atlas.normal`, 8 bits), and judge its o
 
 from ibr_ref.splatting.coverage import Coverage
 from ibr_ref.splatting.inputs import Params, Scene
-from ibr_ref.splatting.measures import coverage, fit_splat_law
+from ibr_ref.splatting.measures import bounds, coverage, fit_splat_law
 from ibr_ref.splatting.render import render
 from ibr_ref.splatting.size_law import SplatLaw
 
-__all__ = ["Coverage", "Params", "Scene", "SplatLaw", "coverage", "fit_splat_law", "render"]
+__all__ = ["Coverage", "Params", "Scene", "SplatLaw", "bounds", "coverage", "fit_splat_law", "render"]
