@@ -5,7 +5,10 @@
 //   ZERO_TO_ONE                               the clip volume is 0 ≤ z ≤ w
 //
 // Written for speed on a CPU driver, whose vertex stage runs on one thread: all of a pixel is one texel and one fetch, what
-// is the same for all vertices is a uniform, and a varying that the fragment stage does not need is not there.
+// is the same for all vertices is a uniform, and a varying that the fragment stage does not need is not there. Measured on
+// llvmpipe and no faster: the pixel from gl_VertexID instead of an attribute, the colour packed into one integer varying,
+// depth and colour as floats, fewer driver threads. A vertex stage that does next to nothing takes two thirds
+// of the time of this one.
 
 layout(std140, binding = 0) uniform Splats {
     mat4 world_from_view;   // T_R→W, of the reference camera

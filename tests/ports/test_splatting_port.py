@@ -70,7 +70,7 @@ def scene(view: str = "perspective", light: str = "baked") -> splatting.Scene:
         reference("perspective", (3.0, 0.0, 0.0), holes=1.0, width=8),
         reference("orthographic", (2.8, -0.6, 0.3), holes=0.1, width=24),
     ]
-    options = {"eye": (3.2, 0.1, 0.3), "target": (0.0, 0.0, 0.0), "near": 2.8, "far": 3.4, "width": 64, "height": 48}
+    options = {"eye": (3.2, 0.1, 0.3), "target": (0.0, 0.0, 0.0), "near": 2.8, "far": 3.5, "width": 64, "height": 48}
     if view == "orthographic":
         camera = ibr_ref.Camera.orthographic(view_height=1.7, **options)  # type: ignore[arg-type]
     else:
@@ -127,7 +127,7 @@ def assert_pictures_agree(
     winner = stages["raster.splat"]
     decided = ~undecided
     covered = stages["raster.overdraw"] > 0
-    assert covered.mean() > 0.3
+    assert covered.mean() > 0.2
     assert (decided & covered).sum() > least_decided * covered.sum(), "hardly a pixel is certain: the test says nothing"
     wrong = decided & (winner != ported["raster.splat"])
     assert not wrong.any(), (wrong.sum(), np.argwhere(wrong)[:3].tolist())
@@ -152,7 +152,7 @@ def test_vertices_agree_within_float32_bounds(port: Port, view: str, light: str)
     kept = frame.stages["vertex.width"] > 0.0
     largest = {name: bounds[name].error[kept].max() for name in ("window_x", "window_y", "depth", "width", "color")}
     assert max(largest["window_x"], largest["window_y"]) < 1e-3, largest  # bounds that mean something
-    assert largest["depth"] < 1e-5, largest
+    assert largest["depth"] < 2e-5, largest
     assert largest["width"] < 1e-4, largest
     assert np.median(bounds["color"].error[kept]) < 1e-4, largest
 
