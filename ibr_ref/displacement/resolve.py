@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.displacement.buffers import index_lanes, lanes, store
 from ibr_ref.jit import LANES, device, kernel, prange
 from ibr_ref.pipeline.merge import passes
+from ibr_ref.pipeline.waves import lanes, load, load_indices, store, store_indices
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -120,11 +120,16 @@ def project_hits(fragments, count, constants, settings, hits):
     row_z = (clip[2, 0], clip[2, 1], clip[2, 2], clip[2, 3])
     row_w = (clip[3, 0], clip[3, 1], clip[3, 2], clip[3, 3])
     u, v, h, depth = lanes(), lanes(), lanes(), lanes()
-    index = index_lanes()
+    index, linear, before = lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
+        load(hits.u, first, u)
+        load(hits.v, first, v)
+        load(hits.h, first, h)
+        load_indices(hits.hit_index, first, index)
+        load_indices(hits.linear_index, first, linear)
+        load(hits.height_before, first, before)
         for lane in range(LANES):
-            i = first + lane
-            p_u, p_v, p_h, k = hits.u[i], hits.v[i], hits.h[i], hits.hit_index[i]
+            p_u, p_v, p_h = u[lane], v[lane], h[lane]
             x = world[0][0] + p_u * world[0][1] + p_v * world[0][2] + p_h * world[0][3]
             y = world[1][0] + p_u * world[1][1] + p_v * world[1][2] + p_h * world[1][3]
             z = world[2][0] + p_u * world[2][1] + p_v * world[2][2] + p_h * world[2][3]
@@ -134,24 +139,25 @@ def project_hits(fragments, count, constants, settings, hits):
             view_w = rows[3][0] * x + rows[3][1] * y + rows[3][2] * z + rows[3][3]
             clip_z = row_z[0] * view_x + row_z[1] * view_y + row_z[2] * view_z + row_z[3] * view_w
             clip_w = row_w[0] * view_x + row_w[1] * view_y + row_w[2] * view_z + row_w[3] * view_w
-            kept = (k >= 0) & (not (clip_z < 0.0))
-            index[lane] = k if kept else np.int32(-1)
+            kept = (index[lane] >= 0.0) & (not (clip_z < 0.0))
+            index[lane] = index[lane] if kept else -1.0
+            linear[lane] = linear[lane] if kept else -1.0
+            before[lane] = before[lane] if kept else 0.0
             u[lane] = p_u if kept else np.nan
             v[lane] = p_v if kept else np.nan
             h[lane] = p_h if kept else np.nan
             depth[lane] = clip_z / clip_w
-        store(index, hits.hit_index, first)
         store(u, hits.u, first)
         store(v, hits.v, first)
         store(h, hits.h, first)
+        store_indices(index, hits.hit_index, first)
+        store_indices(linear, hits.linear_index, first)
+        store(before, hits.height_before, first)
         store(depth, hits.depth, first)
-    for i in range(count):
-        if hits.hit_index[i] < 0:
-            hits.linear_index[i] = -1
-            hits.height_before[i] = 0.0
-            hits.steep_margin[i] = np.nan
-        if settings.polygon_depth:
-            hits.depth[i] = fragments.depth[i]
+    if settings.keep or settings.polygon_depth:
+        for i in range(count):
+            hits.steep_margin[i] = hits.steep_margin[i] if hits.hit_index[i] >= 0 else np.nan
+            hits.depth[i] = fragments.depth[i] if settings.polygon_depth else hits.depth[i]
 
 
 SHOWN, NOTED, HIDDEN = 2, 1, 0
