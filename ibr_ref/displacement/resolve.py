@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import LANES, device, kernel, prange
+from ibr_ref.pipeline.memory import Layout, arrays
 from ibr_ref.pipeline.merge import passes
 from ibr_ref.pipeline.waves import lanes, load, load_indices, store, store_indices
 
@@ -42,64 +43,64 @@ class Target(NamedTuple):
     """Window depth of the nearest kept fragment behind the one that is shown."""
 
 
+_TRIPLES = ("color", "patch", "hit", "albedo", "normal")
+_INTS = ("face", "patch_id", "linear_index", "hit_index")
+_BOOLS = ("steep", "lit")
+
+
 def target_for(pixels: int, keep: bool) -> Target:
     """Arrays for a picture of so many pixels, not yet cleared."""
-    kept = pixels if keep else 0
 
-    def floats(*channels: int) -> Floats:
-        return np.empty((kept, *channels))
+    def layouts(names: tuple[str, ...], count: int) -> list[Layout]:
+        return [
+            (
+                np.int32 if name in _INTS else np.bool_ if name in _BOOLS else np.float64,
+                (count, 3) if name in _TRIPLES else (count,),
+            )
+            for name in names
+        ]
 
-    def ints() -> Ints:
-        return np.empty(kept, np.int32)
-
-    return Target(
-        color=np.empty((pixels, 3)),
-        depth=np.empty(pixels),
-        face=ints(),
-        patch_id=ints(),
-        patch=floats(3),
-        linear_index=ints(),
-        hit_index=ints(),
-        hit=floats(3),
-        height_before=floats(),
-        steep=np.empty(kept, np.bool_),
-        margin=floats(),
-        domain_margin=floats(),
-        steep_margin=floats(),
-        albedo=floats(3),
-        normal=floats(3),
-        lit=np.empty(kept, np.bool_),
-        lit_margin=floats(),
-        axis_margin=floats(),
-        facing_margin=floats(),
-        second=floats(),
-    )
+    picture, stages = Target._fields[:2], Target._fields[2:]
+    # Apart: whoever keeps the picture alone does not keep the memory of the stages.
+    return Target(*arrays(layouts(picture, pixels)), *arrays(layouts(stages, pixels if keep else 0)))
 
 
 @device
-def _clear_part(target, background, first, last):
+def _fill(array, first, last, value):
     for i in range(first, last):
-        target.depth[i] = 1.0
-        for channel in range(3):
-            target.color[i, channel] = background[channel]
-    for i in range(first, last if len(target.face) > 0 else first):
-        target.face[i] = target.patch_id[i] = target.linear_index[i] = target.hit_index[i] = -1
-        target.steep[i] = target.lit[i] = False
-        target.height_before[i] = target.margin[i] = target.domain_margin[i] = target.steep_margin[i] = np.nan
-        target.lit_margin[i] = target.axis_margin[i] = target.facing_margin[i] = np.nan
-        target.second[i] = np.inf
-        for channel in range(3):
-            target.patch[i, channel] = target.hit[i, channel] = np.nan
-            target.albedo[i, channel] = target.normal[i, channel] = np.nan
+        array[i] = value
 
 
-@kernel
-def clear(target, background):
-    """Nothing anywhere: the background at depth 1; -1, NaN and False in the stages."""
-    pixels = len(target.depth)
-    chunk = 4096
-    for part in prange((pixels + chunk - 1) // chunk):
-        _clear_part(target, background, part * chunk, min(pixels, (part + 1) * chunk))
+@device
+def _fill_triples(array, first, last, x, y, z):
+    for i in range(first, last):
+        array[i, 0], array[i, 1], array[i, 2] = x, y, z
+
+
+@device
+def clear(target, background, first, last):
+    """Nothing at the pixels [first, last): the background at depth 1; -1, NaN and False in the stages."""
+    _fill(target.depth, first, last, 1.0)
+    _fill_triples(target.color, first, last, background[0], background[1], background[2])
+    if len(target.face) == 0:
+        return
+    for indices in (target.face, target.patch_id, target.linear_index, target.hit_index):
+        _fill(indices, first, last, -1)
+    for truths in (target.steep, target.lit):
+        _fill(truths, first, last, False)
+    for numbers in (
+        target.height_before,
+        target.margin,
+        target.domain_margin,
+        target.steep_margin,
+        target.lit_margin,
+        target.axis_margin,
+        target.facing_margin,
+    ):
+        _fill(numbers, first, last, np.nan)
+    _fill(target.second, first, last, np.inf)
+    for triples in (target.patch, target.hit, target.albedo, target.normal):
+        _fill_triples(triples, first, last, np.nan, np.nan, np.nan)
 
 
 @device
@@ -264,12 +265,14 @@ def write_shades(fragments, hits, shades, count, verdicts, target):
 
 @kernel
 def resolve_margins(target, margin):
-    """Distance in depth from what is shown to the nearest other kept fragment; NaN where no face covers the pixel."""
+    """Distance in depth from what is shown to the nearest other kept fragment; NaN where no face covers the pixel.
+
+    `margin` may be the array `second` of the target itself.
+    """
     chunk = 4096
     pixels = len(margin)
     for part in prange((pixels + chunk - 1) // chunk):
         for i in range(part * chunk, min(pixels, (part + 1) * chunk)):
             shown = target.depth[i] < 1.0
-            margin[i] = abs(target.second[i] - target.depth[i]) if shown else np.inf
-            if target.face[i] < 0:
-                margin[i] = np.nan
+            distance = abs(target.second[i] - target.depth[i]) if shown else np.inf
+            margin[i] = np.nan if target.face[i] < 0 else distance
