@@ -106,5 +106,5 @@ def frame(images: list[DepthImage], camera: Camera, light: Light | None = None, 
 def points(image: DepthImage) -> Array:
     """(H, W, 3) the world positions of its pixels; NaN off the mask."""
     start, way = rays(image.camera)
-    color, depth, mask = image.arrays
+    _, depth, mask = image.arrays
     return np.where(mask[..., None], start + way * depth[..., None], np.nan)
