@@ -21,16 +21,9 @@ WIDTH, HEIGHT = 19, 2 * BAND_ROWS + 5
 Splat = tuple[float, float, float, float]
 """Window x and y, width, depth."""
 
+pytestmark = pytest.mark.usefixtures("one_thread")
+
 derandomized = settings(derandomize=True, deadline=None, max_examples=200)
-
-
-@pytest.fixture(autouse=True, scope="module")
-def one_thread() -> Any:
-    """Pictures of a few pixels are slower on several threads; one test asks for two."""
-    before = numba.get_num_threads()
-    numba.set_num_threads(1)
-    yield
-    numba.set_num_threads(before)
 
 
 def drawn(splats: list[Splat], *, disc: bool = False, base: int = 0, target: Target | None = None,
@@ -289,6 +282,5 @@ def test_many_splats_on_two_threads_are_those_of_one() -> None:
     one = drawn(splats, width=200, height=150)  # type: ignore[arg-type]
     numba.set_num_threads(min(2, numba.config.NUMBA_NUM_THREADS))
     two = drawn(splats, width=200, height=150)  # type: ignore[arg-type]
-    numba.set_num_threads(1)
     compare(two, tuple(one))
     assert (one.overdraw > 5).mean() > 0.9

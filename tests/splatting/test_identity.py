@@ -10,12 +10,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from ibr_ref import Camera, DepthImage, Light
 from tests.splatting.scenes import Array, frame, looking, measured, noise, parallel, points
+
+pytestmark = pytest.mark.usefixtures("one_thread")
 
 vectors = st.tuples(*[st.floats(-5.0, 5.0)] * 3)
 sizes = st.tuples(st.integers(1, 24), st.integers(1, 24))

@@ -17,6 +17,8 @@ from tests.agreement import arrays_of, check_without_stages, difference, flat
 from tests.golden import SCENES
 from tests.splatting.scenes import Array, ball_depths, frame, image_of, looking, noise, parallel
 
+pytestmark = pytest.mark.usefixtures("one_thread")
+
 QUANTUM = math.sqrt(3.0) / 254.0
 """By how much an 8-bit normal is off at the most: half a step of 1/127 on every axis."""
 
