@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.pipeline.clip import clip_triangles
+from ibr_ref.pipeline.transform import transformed
 from ibr_ref.pipeline.triangles import set_up
 from ibr_ref.pipeline.visibility import interpolate, visible
 from ibr_ref.scene import Camera, DepthImage, Mesh, checks
@@ -71,8 +72,8 @@ def depth_image(mesh: Mesh, camera: Camera) -> DepthImage:
     that is seen at most 1/512 pixel beside it on either axis.
     """
     vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
-    view = _transformed(camera.view_from_world, np.append(vertices, np.ones((len(vertices), 1)), axis=1))
-    clip = _transformed(camera.clip_from_view, view)
+    view = transformed(camera.view_from_world, vertices)
+    clip = transformed(camera.clip_from_view, view)
     varyings = np.append(-view[:, 2:3], np.broadcast_to(mesh.color, vertices.shape), axis=1)
     clipped = clip_triangles(clip, varyings, triangles, camera.width, camera.height)
     drawn = set_up(clipped, camera.width, camera.height)
@@ -82,12 +83,6 @@ def depth_image(mesh: Mesh, camera: Camera) -> DepthImage:
     # A mean of colours in [0, 1] may round to outside.
     color = np.clip(np.where(mask[:, :, None], pixels[:, :, 1:], 0.0), 0.0, 1.0)
     return DepthImage(color=color, depth=pixels[:, :, 0], camera=camera, mask=mask)
-
-
-def _transformed(matrix: Array, points: Array) -> Array:
-    """A matrix applied to points (V, 4), each of its rows summed from left to right."""
-    x, y, z, w = points.T
-    return np.stack([row[0] * x + row[1] * y + row[2] * z + row[3] * w for row in matrix], axis=1)
 
 
 def _sphere_around(mesh: Mesh) -> tuple[Array, float]:

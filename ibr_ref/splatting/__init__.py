@@ -26,9 +26,9 @@ splat covers a pixel, the winner is -1, the depth 1, the margin infinite. The st
 
 **Settled here**, where the paper and common practice leave it open:
 
-- d is the distance from the eye to the point; of an orthographic camera, which has no eye, the distance along the view axis.
+- d is the distance from the eye to the point; of an orthographic camera, which has no eye, that along the view axis.
 - The denominator of the law must be positive for every point that is not dropped; then the width is clamped.
-- A point whose centre lies outside the picture is drawn: its splat may reach in. (OpenGL culls point sprites by their centre.)
+- A point whose centre lies outside the picture is drawn, as its splat may reach in (OpenGL culls point sprites there).
 - Normals: of the two neighbours along an axis of the image the one nearer in depth counts, right or below on a tie; it must
   lie on the mask and within 5 % of the depth. A normal at right angles to the line of sight stays as the cross product
   (right or left, then below or above) has it.
@@ -40,15 +40,15 @@ splat covers a pixel, the winner is -1, the depth 1, the margin infinite. The st
 - The law is fitted to the tau-quantile (0.95) of the widths that the points need, each at most 1.5 times what a surface that
   faces both cameras would need there: grazing surfaces stretch without limit. `size_law.py` says more.
 
-**For ports**: a GL port that flips the rows on read-back turns the half-open rule of the squares upside down; one that negates
-clip y agrees. Point sprites clamp widths, may snap them, and are culled by their centre; quads do not. The 8-bit normals
-are also an input: hand your port ours (`atlas.normal`), and judge its own by interval.
+**For ports**: a GL port that flips the rows on read-back turns the half-open rule of the squares upside down; one that
+negates clip y agrees. Point sprites clamp widths, may snap them, and are culled by their centre; quads do not. The normals
+are also an input: hand your port ours (`atlas.normal`, 8 bits), and judge its own by interval.
 """
 
 from ibr_ref.splatting.coverage import Coverage
 from ibr_ref.splatting.inputs import Params, Scene
-from ibr_ref.splatting.measures import coverage, fit_splat_law
+from ibr_ref.splatting.measures import bounds, coverage, fit_splat_law
 from ibr_ref.splatting.render import render
 from ibr_ref.splatting.size_law import SplatLaw
 
-__all__ = ["Coverage", "Params", "Scene", "SplatLaw", "coverage", "fit_splat_law", "render"]
+__all__ = ["Coverage", "Params", "Scene", "SplatLaw", "bounds", "coverage", "fit_splat_law", "render"]

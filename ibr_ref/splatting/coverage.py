@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.pipeline.clip import clip_triangles
+from ibr_ref.pipeline.transform import transformed
 from ibr_ref.pipeline.triangles import set_up
 from ibr_ref.pipeline.visibility import visible
 from ibr_ref.splatting.buffers import Reference, View
@@ -57,7 +58,8 @@ def surface_pixels(references: list[Reference], view: View) -> NDArray[np.bool_]
     width, height = int(view.width), int(view.height)
     inside = np.zeros((height, width), np.bool_)
     for reference in references:
-        clip, valid = _clip_positions(world_points(reference), view), valid_mask(reference)
+        clip = transformed(view.clip_from_view, transformed(view.view_from_world, world_points(reference)))
+        valid = valid_mask(reference)
         rows, columns = len(reference.row_starts) - 1, reference.columns
         step = max(1, _BLOCK_PIXELS // columns)
         for first in range(0, rows - 1, step):
@@ -65,16 +67,6 @@ def surface_pixels(references: list[Reference], view: View) -> NDArray[np.bool_]
             clipped = clip_triangles(clip, np.empty((len(clip), 0)), triangles, width, height)
             inside |= visible(set_up(clipped, width, height), width, height).triangle >= 0
     return inside
-
-
-def _clip_positions(points: NDArray[np.float64], view: View) -> NDArray[np.float64]:
-    """(P, 4) clip coordinates of world points (P, 3), each row summed from left to right."""
-
-    def transform(m: NDArray[np.float64], p: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
-        return [row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3] * p[3] for row in m]
-
-    world = [*points.T, np.ones(len(points))]
-    return np.stack(transform(view.clip_from_view, transform(view.view_from_world, world)), axis=1)
 
 
 def _quads(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ibr_ref.io import Frame
 from ibr_ref.scene import Camera, DepthImage, checks
@@ -12,6 +13,7 @@ from ibr_ref.splatting.coverage import Coverage, surface_pixels
 from ibr_ref.splatting.inputs import Scene
 from ibr_ref.splatting.references import prepare, view_of
 from ibr_ref.splatting.size_law import MOST_SAMPLES, SplatLaw, fit, needed_widths
+from ibr_ref.splatting.unproject import world_points
 
 
 def fit_splat_law(
@@ -55,4 +57,18 @@ def coverage(scene: Scene, frame: Frame) -> Coverage:
         covered=frame.stages["raster.splat"] >= 0,
         surface=surface_pixels(references, view_of(scene.camera)),
         overdraw=frame.stages["raster.overdraw"],
+    )
+
+
+def bounds(images: Sequence[DepthImage]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The corners (3,), low and high, of the box around all points of reference images, in world space.
+
+    Raises ValueError if none of them has a valid pixel.
+    """
+    points = [world_points(prepare(image).reference) for image in images if np.any(image.mask)]
+    if not points:
+        raise checks.reject("images", f"{len(images)} images without a valid pixel", "at least one valid pixel")
+    return (
+        np.min([np.nanmin(p, axis=0) for p in points], axis=0),
+        np.max([np.nanmax(p, axis=0) for p in points], axis=0),
     )

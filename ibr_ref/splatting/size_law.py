@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.optimize import linprog
 
+from ibr_ref.pipeline.transform import transformed
 from ibr_ref.splatting.buffers import Reference, View
 from ibr_ref.splatting.normals import JUMP, valid_mask
 from ibr_ref.splatting.unproject import world_points
@@ -107,16 +108,9 @@ def _half_steps(
     return np.where(np.isnan(before), -after, before), np.where(np.isnan(after), -before, after)
 
 
-def _affine(matrix: Floats, row: int, p: Floats) -> Floats:
-    """A row of a (4, 4) matrix applied to points (n, 3)."""
-    result: Floats = matrix[row, 0] * p[:, 0] + matrix[row, 1] * p[:, 1] + matrix[row, 2] * p[:, 2] + matrix[row, 3]
-    return result
-
-
 def _projected(view: View, p: Floats) -> tuple[Floats, Floats, Floats]:
     """Window x, y and clip w of world points (n, 3)."""
-    v = np.stack([_affine(view.view_from_world, row, p) for row in range(3)], axis=1)
-    x, y, w = (_affine(view.clip_from_view, row, v) for row in (0, 1, 3))
+    x, y, _, w = transformed(view.clip_from_view, transformed(view.view_from_world, p)).T
     with np.errstate(divide="ignore", invalid="ignore"):
         return (x / w + 1.0) / 2.0 * view.width, (1.0 - y / w) / 2.0 * view.height, w
 
@@ -124,7 +118,7 @@ def _projected(view: View, p: Floats) -> tuple[Floats, Floats, Floats]:
 def _distances(view: View, p: Floats) -> Floats:
     """The law's d for world points (n, 3)."""
     if not view.perspective:
-        return -_affine(view.view_from_world, 2, p)
+        return -transformed(view.view_from_world, p)[:, 2]
     x, y, z = (p[:, axis] - view.eye[axis] for axis in range(3))
     result: Floats = np.sqrt(x * x + y * y + z * z)
     return result
