@@ -61,7 +61,7 @@ def test_a_tie_goes_to_the_earlier_image() -> None:
         assert_array_equal(here.stages["vertex.source"][here.stages["raster.splat"][first.mask], 0], 0)
 
 
-# --- Blocks and stages -----------------------------------------------------------------------------------------------
+# --- Batches and stages -----------------------------------------------------------------------------------------------
 
 BY_NAME = {name: scene for name, scene in SCENES.items() if name.startswith("splatting/")}
 
@@ -72,12 +72,13 @@ def test_without_stages_the_same_picture(name: str) -> None:
     check_without_stages(splatting, scene, params, splatting.render(scene, params))
 
 
-@pytest.mark.parametrize("points", [1, 17, 100])
+@pytest.mark.parametrize("points", [14, 17, 100])
 @pytest.mark.parametrize("name", ["splatting/balls", "splatting/pages"])
-def test_the_size_of_the_blocks_changes_no_bit(name: str, points: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_size_of_the_batches_changes_no_bit(name: str, points: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From one row of an image on."""
     scene, params = BY_NAME[name](48, 36)
     whole = splatting.render(scene, params)
-    monkeypatch.setitem(splatting.render.__globals__, "BLOCK_POINTS", points)
+    monkeypatch.setitem(splatting.render.__globals__, "BATCH_POINTS", points)
     parts = splatting.render(scene, params)
     for array, values in arrays_of(whole).items():
         assert not difference(array, arrays_of(parts)[array], values)
