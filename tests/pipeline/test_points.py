@@ -84,6 +84,14 @@ def test_a_disc_covers_the_centres_within_its_radius_inside_the_square(x: float,
 
 
 @derandomized
+@given(lattice_x, lattice_y, st.integers(0, WIDTH - 1), st.booleans(), st.sampled_from([-1, 0, 1]))
+def test_borders_through_the_centre_of_a_pixel(x: float, y: float, column: int, disc: bool, more: int) -> None:
+    """And 1/256 beside it: the half-open rule and every tie of the snapping decide about a whole column."""
+    width = max(0.0, 2.0 * abs(column + 0.5 - x) + more / 128)
+    assert_array_equal(drawn([(x, y, width, 0.5)], disc=disc).overdraw, covered(x, y, width, disc))
+
+
+@derandomized
 @given(xs, ys, st.floats(0.0, 30.0), st.booleans())
 def test_any_width_to_the_rounding_of_the_borders(x: float, y: float, width: float, disc: bool) -> None:
     """Borders of other widths are rounded twice, by 2^-48 pixel at most below 64; the slack moves them by 2^-46.
@@ -109,7 +117,7 @@ def test_any_width_to_the_rounding_of_the_borders(x: float, y: float, width: flo
         (2.5, 0.0, []),  # a half-open interval of no length holds nothing
         (2.5, 2.0**-7, [2]),
         (2.0, 2.0**-7, []),
-        (2.5 + 1 / 512, 1.0, [2]),  # 2.5 is 640/256, even: ties go there
+        (2.5 + 1 / 512, 2.0**-8, [2]),  # 2.5 is 640/256, even: ties go there
         (2.5 + 3 / 512, 2.0**-7, []),  # up to 642/256: [2.50390625, ...)
         (2.5 - 1 / 512, 2.0**-8, [2]),  # up to 640/256
         (2.5 + 1 / 256, 2.0**-7, [2]),  # [2.5, ...)
@@ -265,7 +273,9 @@ def test_no_splats() -> None:
     assert (target.splat == -1).all()
 
 
-@pytest.mark.parametrize(("width", "height"), [(1, 1), (3, 1), (1, 50), (40, BAND_ROWS), (2, 8 * BAND_ROWS + 1)])
+@pytest.mark.parametrize(
+    ("width", "height"), [(1, 1), (3, 1), (1, 50), (40, BAND_ROWS), (2, 8 * BAND_ROWS), (2, 8 * BAND_ROWS + 1)]
+)
 def test_pictures_of_any_number_of_bands(width: int, height: int) -> None:
     """Each pixel its own splat, the last column and row as well; the order of the bands leaves none out."""
     splats = [(x + 0.5, y + 0.5, 1.0, 0.5) for y in range(height) for x in range(width)]

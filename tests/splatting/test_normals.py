@@ -205,23 +205,29 @@ def test_a_picture_of_one_pixel_points_to_the_camera() -> None:
     assert codes(image).tolist() == [[[128, 1, 128]]]
 
 
-@pytest.mark.parametrize(("right", "left", "expected"), [
-    (3.0, 3.1, "right"),
-    (3.1, 3.0, "left"),
-    (3.1, 2.9, "right"),
-    (2.9, 3.1, "right"),
-    (3.16, 3.1, "left"),
-    (3.0, np.nan, "right"),
-    (np.nan, 2.9, "left"),
-    (3.2, 2.86, "left"),
+@pytest.mark.parametrize("upright", [False, True])
+@pytest.mark.parametrize(("after", "before", "expected"), [
+    (3.0, 3.1, "after"),
+    (3.1, 3.0, "before"),
+    (3.125, 2.875, "after"),
+    (2.875, 3.125, "after"),
+    (3.16, 3.1, "before"),
+    (3.0, np.nan, "after"),
+    (np.nan, 2.9, "before"),
+    (3.2, 2.86, "before"),
 ])  # fmt: skip
-def test_of_two_neighbours_the_one_nearer_in_depth_counts(right: float, left: float, expected: str) -> None:
-    """On a tie the right one; a missing one and one across a jump, more than 0.15 here, does not."""
-    camera = parallel((0, -5, 0), size=(3, 2))
-    depth = np.array([[left, 3.0, right], [left, 3.0, right]])
-    image = image_of(camera, depth)
+def test_of_two_neighbours_the_one_nearer_in_depth_counts(
+    after: float, before: float, expected: str, upright: bool
+) -> None:
+    """On a tie the right or lower one; a missing one and one across a jump, more than 0.15 here, does not. Along the other
+    axis all depths are the same.
+    """
+    camera = parallel((0, -5, 0), size=(3, 3))
+    depth = np.array([[before, 3.0, after]] * 3)
+    image = image_of(camera, depth.T.copy() if upright else depth)
     p = points(image)
-    other = p[0, 2] if expected == "right" else p[0, 0]
-    n = np.cross(other - p[0, 1], p[1, 1] - p[0, 1])
+    chosen = 2 if expected == "after" else 0
+    across, along = (p[1, 2], p[chosen, 1]) if upright else (p[1, chosen], p[2, 1])
+    n = np.cross(across - p[1, 1], along - p[1, 1])
     n *= np.sign(n @ camera.eye[:3]) / np.sqrt(n @ n)
-    assert_array_equal(codes(image)[0, 1], np.floor(127.0 * n + 128.5))
+    assert_array_equal(codes(image)[1, 1], np.floor(127.0 * n + 128.5))
