@@ -49,8 +49,8 @@ def test_rectangles_fit_and_never_overlap(sizes: list[tuple[int, int]]) -> None:
 
 
 def test_shelves_by_hand() -> None:
-    sizes = [(10, 5), (12, 7), (10, 3), (1, 1), (32, 20), (32, 1), (5, 5)]
-    expected = [[0, 0, 0], [0, 10, 0], [0, 22, 0], [0, 0, 7], [0, 0, 8], [0, 0, 28], [1, 0, 0]]
+    sizes = [(10, 5), (12, 7), (10, 3), (1, 1), (32, 20), (32, 1), (5, 5), (30, 2)]
+    expected = [[0, 0, 0], [0, 10, 0], [0, 22, 0], [0, 0, 7], [0, 0, 8], [0, 0, 28], [1, 0, 0], [1, 0, 5]]
     assert pack(sizes, LIMIT)[:, :3].tolist() == expected
 
 

@@ -104,6 +104,19 @@ def test_a_centre_outside_reaches_in() -> None:
     assert_array_equal(covered, np.broadcast_to(np.arange(16) < 2, (8, 16)))  # -8 + 10
 
 
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 1, 0), (1, 2, 0)])
+def test_the_margin_is_how_much_farther_the_next_splat_is(order: tuple[int, int, int]) -> None:
+    """Three walls at window depths 1/4, 1/2 and 1, the second with one pixel, the last in half of the picture."""
+    view = parallel((0, -4, 0), size=(4, 1), near=1.0, far=5.0)
+    masks = [[True] * 4, [False, True, False, False], [False, False, True, True]]
+    walls = [DepthImage(color=np.ones((1, 4, 3)), depth=np.full((1, 4), depth), camera=view, mask=[mask])
+             for depth, mask in zip((2.0, 3.0, 5.0), masks, strict=True)]  # fmt: skip
+    stages = frame([walls[i] for i in order], view).stages
+    assert_array_equal(stages["raster.margin"], [[np.inf, 0.25, 0.75, 0.75]])
+    assert_array_equal(stages["raster.overdraw"], [[1, 2, 2, 2]])
+    assert_array_equal(frame([walls[0], walls[0]], view).stages["raster.margin"], [[0.0] * 4])
+
+
 # Colours
 
 
