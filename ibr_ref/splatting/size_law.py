@@ -82,11 +82,11 @@ def needed_widths(reference: Reference, view: View, stride: int) -> tuple[Floats
     corners = [_projected(view, center + a + b) for a in across for b in along]
     x, y, w = (np.stack([corner[i] for corner in corners]) for i in range(3))
     side = np.maximum(x.max(axis=0) - x.min(axis=0), y.max(axis=0) - y.min(axis=0))
-    facing = _facing_side(reference, view, pixels, w.mean(axis=0))
     seen_x, seen_y, seen_w = _projected(view, center)
     in_view = (seen_w > 0.0) & (seen_x >= 0.0) & (seen_x < view.width) & (seen_y >= 0.0) & (seen_y < view.height)
     in_view &= (w > 0.0).all(axis=0) & np.isfinite(side)
-    return _distances(view, center)[in_view], np.minimum(side, GRAZING * facing)[in_view]
+    facing = _facing_side(reference, view, pixels[in_view], w.mean(axis=0)[in_view])
+    return _distances(view, center[in_view]), np.minimum(side[in_view], GRAZING * facing)
 
 
 def _half_steps(
