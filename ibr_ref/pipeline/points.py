@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
+from ibr_ref.pipeline.memory import arrays
 from ibr_ref.pipeline.merge import passes
 from ibr_ref.pipeline.sampling import clamped
 
@@ -63,12 +64,15 @@ class Target(NamedTuple):
 
 def target_for(width: int, height: int, keep: bool) -> Target:
     """Cleared buffers; with `keep` those of the stages too."""
-    return Target(
-        splat=np.full((height, width), -1, np.int32),
-        depth=np.ones((height, width)),
-        overdraw=np.zeros((height if keep else 0, width), np.int32),
-        second=np.full((height if keep else 0, width), np.inf),
+    picture, noted = (height, width), (height if keep else 0, width)
+    target = Target(
+        *arrays([(np.int32, picture), (np.float64, picture)]), *arrays([(np.int32, noted), (np.float64, noted)])
     )
+    target.splat.fill(-1)
+    target.depth.fill(1.0)
+    target.overdraw.fill(0)
+    target.second.fill(np.inf)
+    return target
 
 
 @device
@@ -248,11 +252,11 @@ def draw_splats(splats: Splats, disc: bool, base: int, target: Target) -> None:
     """Draw splats into `target`, over what has been drawn before; the first of them has the index `base` there."""
     rows, columns = target.splat.shape
     bands = -(-rows // BAND_ROWS)
-    spans = Spans(*(np.empty(len(splats.depth), np.int32) for _ in range(4)))
+    spans = Spans(*arrays([(np.int32, (len(splats.depth),))] * 4))
     counts = np.zeros((_PARTS, bands), np.int64)
     _set_up(splats.x, splats.y, splats.width, float(columns), float(rows), spans, counts)
     ends = np.cumsum(counts.T).reshape(bands, _PARTS).T  # band by band, in each the parts in order
     starts = np.append(ends[0] - counts[0], ends[-1, -1])
-    members = np.empty(int(starts[-1]), np.int32)
+    (members,) = arrays([(np.int32, (int(starts[-1]),))])
     _sort(spans, np.ascontiguousarray(ends - counts), members)
     _draw(splats, spans, members, starts, disc, base, target)

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.pipeline.memory import arrays
+
 Floats = NDArray[np.float64]
 
 
@@ -84,4 +86,4 @@ class Vertices(NamedTuple):
 
 def vertices_for(count: int) -> Vertices:
     """Room for so many points."""
-    return Vertices(np.empty(count), np.empty(count), np.empty(count), np.empty(count))
+    return Vertices(*arrays([(np.float64, (count,))] * 4))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.io import Frame
+from ibr_ref.pipeline.memory import arrays
 from ibr_ref.pipeline.points import Splats, Target, draw_splats, target_for
 from ibr_ref.scene import Light
 from ibr_ref.splatting import atlas
@@ -45,7 +46,7 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
                 raise ValueError(_unsound(params, rows))
         drawn = _part(vertices, batch[0].first - base, batch[-1].stop - base)
         draw_splats(Splats(*drawn), params.shape == "disc", batch[0].first, target)
-    color = np.empty((*target.splat.shape, 3))
+    (color,) = arrays([(np.float64, (*target.splat.shape, 3))])
     clear(np.array(scene.background), color)
     for first, prepared in zip(starts, references, strict=False):
         resolve(prepared.reference, _normals(prepared, lighting), lighting, view, first, target.splat, color)

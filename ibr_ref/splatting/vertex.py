@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.jit import LANES, device, kernel, prange
 from ibr_ref.pipeline.lighting import lit_channel, phong
+from ibr_ref.pipeline.waves import lanes
 from ibr_ref.splatting.buffers import Law, Lighting, Reference, Vertices, View
 from ibr_ref.splatting.normals import decoded
 from ibr_ref.splatting.unproject import normalized_x, normalized_y, transform, view_point
@@ -70,9 +71,8 @@ def _place_rows(reference, view, law, first_row, last_row, base, vertices):
     eye = (view.eye[0], view.eye[1], view.eye[2])
     f_x, skew, center_x, f_y, center_y = k[0, 0], k[0, 1], k[0, 2], k[1, 1], k[1, 2]
     pixels, depths, row_starts = reference.pixels, reference.depth, reference.row_starts
-    depth, x_n, x, y, z = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    window_x, window_y, window_z = np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    width, flaw, flaws = np.empty(LANES), np.empty(LANES), 0.0
+    depth, x_n, x, y, z = lanes(), lanes(), lanes(), lanes(), lanes()
+    window_x, window_y, window_z, width, flaw, flaws = lanes(), lanes(), lanes(), lanes(), lanes(), 0.0
     for row in range(first_row, last_row):
         y_n, start = normalized_y(f_y, center_y, row), np.int32(row * reference.columns)
         for first in range(row_starts[row], row_starts[row + 1], LANES):

@@ -31,8 +31,8 @@ def drawn(splats: list[Splat], *, disc: bool = False, base: int = 0, target: Tar
     """Draw a list into new buffers, or into those given."""
     table = np.array(splats, np.float64).reshape(-1, 4)
     target = target_for(width, height, True) if target is None else target
-    window, widths, depths = table[:, :2].copy(), table[:, 2].copy(), table[:, 3].copy()
-    draw_splats(Splats(window, depths, widths), disc, base, target)
+    x, y, width, depth = (column.copy() for column in table.T)
+    draw_splats(Splats(x, y, depth, width), disc, base, target)
     return target
 
 
