@@ -43,10 +43,7 @@ class Scene:
         for name, kind in (("camera", Camera), ("light", Light)):
             if not isinstance(getattr(self, name), kind):
                 raise checks.reject(name, type(getattr(self, name)).__name__, kind.__name__)
-        background = checks.vector("background", self.background)
-        if not ((background >= 0.0) & (background <= 1.0)).all():
-            raise checks.reject("background", background.tolist(), "numbers in [0, 1]")
-        object.__setattr__(self, "background", background)
+        object.__setattr__(self, "background", checks.color("background", self.background))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,17 +9,10 @@ import numpy as np
 
 from ibr_ref.displacement.buffers import lanes, load, store
 from ibr_ref.jit import LANES, device
+from ibr_ref.pipeline.lighting import lit_channel, phong, unit
 from ibr_ref.pipeline.sampling import fetch, footprint, mix_channel
 
 _LEAST_DIFFERENCE = 2.0**-16  # a smaller difference of heights is rounding, not a slope
-
-
-@device
-def _unit(x, y, z):
-    """The vector divided by its length; zero stays zero."""
-    length = np.sqrt(x * x + y * y + z * z)
-    length = length if length > 0.0 else 1.0
-    return x / length, y / length, z / length
 
 
 @device
@@ -73,7 +66,7 @@ def height_normals(hits, count, constants, slope, normal):
             continue
         for lane in range(LANES):
             g_u, g_v = slope[0, first + lane], slope[1, first + lane]
-            x[lane], y[lane], z[lane] = _unit(
+            x[lane], y[lane], z[lane] = unit(
                 n0 - scale * (g_u * ux + g_v * vx),
                 n1 - scale * (g_u * uy + g_v * vy),
                 n2 - scale * (g_u * uz + g_v * vz),
@@ -100,7 +93,7 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
             m0 = 2.0 * mix_channel(texels, r, i00, i10, i01, i11, fx, fy) - 1.0
             m1 = 2.0 * mix_channel(texels, g, i00, i10, i01, i11, fx, fy) - 1.0
             m2 = 2.0 * mix_channel(texels, b, i00, i10, i01, i11, fx, fy) - 1.0
-            x[lane], y[lane], z[lane] = _unit(
+            x[lane], y[lane], z[lane] = unit(
                 m0 * tx + m1 * bx + m2 * nx, m0 * ty + m1 * by + m2 * ny, m0 * tz + m1 * bz + m2 * nz
             )
             if (m0 == 0.0) & (m1 == 0.0) & (m2 == 0.0):
@@ -132,7 +125,7 @@ def albedos(repeat, hits, count, texels, columns, rows, albedo):
 def _horizontal(constants, along_u, along_v):
     """along_u U + along_v V, normalized; n where that is zero (the eye straight above)."""
     axes, n = constants.axes, constants.frame[2]
-    x, y, z = _unit(
+    x, y, z = unit(
         along_u * axes[0, 0] + along_v * axes[1, 0],
         along_u * axes[0, 1] + along_v * axes[1, 1],
         along_u * axes[0, 2] + along_v * axes[1, 2],
@@ -150,7 +143,7 @@ def _wall(constants, g_u, g_v, u, v):
         side_u, side_v = abs(d_u) * length_u, abs(d_v) * length_v
         return _horizontal(constants, d_u, d_v), side_u >= side_v, abs(side_u - side_v)
     across = constants.rows
-    normal = _unit(
+    normal = unit(
         -(g_u * across[0, 0] + g_v * across[1, 0]),
         -(g_u * across[0, 1] + g_v * across[1, 1]),
         -(g_u * across[0, 2] + g_v * across[1, 2]),
@@ -178,34 +171,6 @@ def facades(hits, count, texels, columns, rows, constants, shades):
 
 
 @device
-def _power(base, exponent):
-    """base^exponent by repeated squaring."""
-    result = 1.0
-    while exponent > 0:
-        if exponent & 1:
-            result *= base
-        base *= base
-        exponent >>= 1
-    return result
-
-
-@device
-def _phong(albedo, ambient, diffuse, specular):
-    """One channel of the colour, clamped to [0, 1]."""
-    colour = albedo * (ambient + diffuse) + specular
-    colour = colour if colour > 0.0 else 0.0
-    return colour if colour < 1.0 else 1.0
-
-
-@device
-def _towards(homogeneous, x, y, z):
-    """Unit vector from a world point towards a homogeneous one."""
-    if homogeneous[3] == 0.0:
-        return homogeneous[0], homogeneous[1], homogeneous[2]
-    return _unit(homogeneous[0] - x, homogeneous[1] - y, homogeneous[2] - z)
-
-
-@device
 def light_hits(hits, count, constants, shades):
     """Phong: albedo (ambient + diffuse lit max(0, n.l)) + specular lit max(0, r.v)^e where n.l > 0."""
     light = (constants.light_world[0], constants.light_world[1], constants.light_world[2], constants.light_world[3])
@@ -226,21 +191,12 @@ def light_hits(hits, count, constants, shades):
             x = c0 + u * u0 + v * v0 + h * h0
             y = c1 + u * u1 + v * v1 + h * h1
             z = c2 + u * u2 + v * v2 + h * h2
-            lx, ly, lz = _towards(light, x, y, z)
-            nx, ny, nz = shades.normal[0, i], shades.normal[1, i], shades.normal[2, i]
-            cosine = nx * lx + ny * ly + nz * lz
             lit = 1.0 if shades.lit[i] else 0.0
-            shine = 0.0
-            if specular > 0.0:
-                ex, ey, ez = _towards(eye, x, y, z)
-                twice = 2.0 * cosine
-                reflected = (twice * nx - lx) * ex + (twice * ny - ly) * ey + (twice * nz - lz) * ez
-                gleam = _power(reflected if reflected > 0.0 else 0.0, exponent)
-                shine = specular * lit * gleam if cosine > 0.0 else 0.0
-            bright = diffuse * lit * (cosine if cosine > 0.0 else 0.0)
-            red[lane] = _phong(shades.albedo[0, i], ambient, bright, shine)
-            green[lane] = _phong(shades.albedo[1, i], ambient, bright, shine)
-            blue[lane] = _phong(shades.albedo[2, i], ambient, bright, shine)
+            nx, ny, nz = shades.normal[0, i], shades.normal[1, i], shades.normal[2, i]
+            bright, shine, cosine = phong(light, eye, x, y, z, nx, ny, nz, diffuse, specular, exponent, lit)
+            red[lane] = lit_channel(shades.albedo[0, i], ambient, bright, shine)
+            green[lane] = lit_channel(shades.albedo[1, i], ambient, bright, shine)
+            blue[lane] = lit_channel(shades.albedo[2, i], ambient, bright, shine)
             facing[lane] = abs(cosine)
         store(red, shades.color[0], first)
         store(green, shades.color[1], first)

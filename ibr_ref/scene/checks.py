@@ -75,6 +75,14 @@ def vector(field: str, value: ArrayLike, length: int = 3) -> NDArray[np.float64]
     return frozen(array)
 
 
+def color(field: str, value: ArrayLike) -> NDArray[np.float64]:
+    """A read-only (3,) float64 array of numbers in [0, 1]."""
+    array = vector(field, value)
+    if not ((array >= 0.0) & (array <= 1.0)).all():
+        raise reject(field, array.tolist(), "numbers in [0, 1]")
+    return array
+
+
 def matrix(field: str, value: ArrayLike, rows: int, columns: int) -> NDArray[np.float64]:
     """A read-only float64 array of rows x columns finite numbers."""
     allowed = f"a {rows} x {columns} matrix of finite numbers"

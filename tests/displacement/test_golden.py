@@ -7,9 +7,11 @@ import hashlib
 import numpy as np
 import pytest
 
+from ibr_ref import displacement
 from ibr_ref.displacement import render
+from tests.agreement import check_agreement
 from tests.displacement import golden
-from tests.displacement.agreement import check_agreement
+from tests.naive import displacement as twin
 
 
 @pytest.mark.parametrize("name", golden.SCENES)
@@ -21,7 +23,7 @@ def test_frame_is_golden(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in golden.SCENES if name != "exact"])
 def test_scene_agrees_with_the_naive_twin(name: str) -> None:
     """On a smaller picture; the twin has no exact search."""
-    check_agreement(*golden.SCENES[name](64, 48))
+    check_agreement(displacement, twin, *golden.SCENES[name](64, 48))
 
 
 def test_file_holds_these_scenes_only() -> None:

@@ -13,13 +13,14 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
-from ibr_ref import models
+from ibr_ref import displacement, models
 from ibr_ref.displacement import Params, Scene
 from ibr_ref.scene import BasePolygon, Camera, Light
 from tests import naive
-from tests.displacement.agreement import Arrays, arrays_of, check_agreement, check_without_stages
+from tests.agreement import Arrays, arrays_of, check_agreement, check_without_stages
 from tests.displacement.features import features
 from tests.displacement.strategies import REGIONS, Case, cases
+from tests.naive import displacement as twin
 
 SCENES = 504
 
@@ -51,8 +52,8 @@ def digest(arrays: Arrays) -> bytes:
 
 def agree(case: Case) -> None:
     """Compare a drawn scene, and count its features if it is a new one."""
-    frame = check_agreement(case.scene, case.params)
-    check_without_stages(case.scene, case.params, frame)
+    frame = check_agreement(displacement, twin, case.scene, case.params)
+    check_without_stages(displacement, case.scene, case.params, frame)
     frames.add(digest(arrays_of(frame)))
     if len(frames) > seen["scenes"]:
         seen.update(["scenes", *features(case.scene, case.params, frame)])
@@ -141,8 +142,8 @@ def test_models_agree(model: BasePolygon) -> None:
     size = float(np.linalg.norm(np.asarray(model.edge_u)))
     camera = Camera.look_at(eye=(0.9 * size, -1.1 * size, 0.7 * size), target=(0, 0, 0), width=160, height=120)
     scene = Scene(polygons=[model], camera=camera, light=Light(direction=(0.5, -0.8, 1.0), specular=0.3))
-    frame = check_agreement(scene, Params())
-    check_without_stages(scene, Params(), frame)
+    frame = check_agreement(displacement, twin, scene, Params())
+    check_without_stages(displacement, scene, Params(), frame)
     found = features(scene, Params(), frame)
     assert {"out: hit protruded", "out: hit on the polygon", "out: facade", "out: discarded"} <= found
 

@@ -87,9 +87,8 @@ def light_source(light: Any) -> Vec4:
     return d[0], d[1], d[2], 0.0
 
 
-def towards_light(light: Any, p: Vec3) -> Vec3:
-    """The unit vector l from the point towards the light (stage 3)."""
-    source = light_source(light)
+def unit_towards(source: Vec4, p: Vec3) -> Vec3:
+    """The unit vector from the point towards a light or an eye (stage 3); a direction, w = 0, is a unit vector already."""
     if source[3] == 0.0:
         return source[0], source[1], source[2]
     return normalize(towards(source, p))
@@ -115,8 +114,8 @@ def lit_color(albedo: Vec3, n: Vec3, p: Vec3, light: Any, camera: Any) -> Vec3:
     """The stored colour without a light, else Phong clamped to [0, 1] (stage 3)."""
     if light is None:
         return albedo
-    l = towards_light(light, p)
-    v = normalize(towards(vec4(camera.eye), p))
+    l = unit_towards(light_source(light), p)
+    v = unit_towards(vec4(camera.eye), p)
     n_dot_l = dot(n, l)
     shine = highlight(n, l, v, n_dot_l, int(light.exponent))
     ambient, diffuse, specular = per_channel(light.ambient), per_channel(light.diffuse), per_channel(light.specular)

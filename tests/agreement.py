@@ -1,27 +1,29 @@
-"""Comparison of the package with its naive twin: every array, by name, shape, type and value."""
+"""Comparison of the package with its naive twins: every array, by name, shape, type and value."""
 
 from __future__ import annotations
+
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref import displacement
-from ibr_ref.displacement import Params, Scene
 from ibr_ref.io import Frame
-from tests.naive import displacement as twin
 
 Arrays = dict[str, NDArray[np.generic]]
 
 
+def flat(stages: dict[str, Any]) -> Arrays:
+    """Stages of several arrays as several arrays."""
+    arrays: Arrays = {}
+    for name, stage in stages.items():
+        arrays.update({f"{name}.{i}": a for i, a in enumerate(stage)} if isinstance(stage, tuple) else {name: stage})
+    return arrays
+
+
 def arrays_of(frame: Frame) -> Arrays:
     """The stages of a frame, and its picture and depth with them."""
-    return {**frame.stages, "color": frame.color, "depth": frame.depth}
-
-
-def twin_arrays(scene: Scene, params: Params) -> Arrays:
-    """The same by the naive twin."""
-    stages, color, depth = twin.render(scene, params)
-    return {**stages, "color": color, "depth": depth}
+    return {**flat(frame.stages), "color": frame.color, "depth": frame.depth}
 
 
 def difference(name: str, ours: NDArray[np.generic], theirs: NDArray[np.generic]) -> str:
@@ -32,12 +34,8 @@ def difference(name: str, ours: NDArray[np.generic], theirs: NDArray[np.generic]
     if not differ.any():
         return ""
     where = tuple(int(i) for i in np.argwhere(differ)[0])
-    place = f"vertex {where[0]}" if name.startswith("vertex.") else f"pixel (x={where[1]}, y={where[0]})"
-    channel = f" channel {where[-1]}" if len(where) > (1 if name.startswith("vertex.") else 2) else ""
     count = np.count_nonzero(differ)
-    return (
-        f"{name}: {place}{channel}: package {ours[where]!r}, twin {theirs[where]!r} ({count} of {differ.size} differ)"
-    )
+    return f"{name}{list(where)}: package {ours[where]!r}, twin {theirs[where]!r} ({count} of {differ.size} differ)"
 
 
 def differences(ours: Arrays, theirs: Arrays) -> str:
@@ -47,16 +45,18 @@ def differences(ours: Arrays, theirs: Arrays) -> str:
     return "\n".join(line for line in lines if line)
 
 
-def check_agreement(scene: Scene, params: Params) -> Frame:
-    """Render with both and compare everything; gives the package's frame."""
-    frame = displacement.render(scene, params)
-    assert not (report := differences(arrays_of(frame), twin_arrays(scene, params))), report
+def check_agreement(method: ModuleType, twin: ModuleType, scene: Any, params: Any) -> Frame:
+    """Render with a method of the package and with its twin, and compare everything; gives the package's frame."""
+    frame = method.render(scene, params)
+    stages, color, depth = twin.render(scene, params)
+    theirs = {**flat(stages), "color": color, "depth": depth}
+    assert not (report := differences(arrays_of(frame), theirs)), report
     return frame
 
 
-def check_without_stages(scene: Scene, params: Params, frame: Frame) -> None:
+def check_without_stages(method: ModuleType, scene: Any, params: Any, frame: Frame) -> None:
     """The same picture and depth come out where no stages are kept."""
-    bare = displacement.render(scene, params, stages=False)
+    bare = method.render(scene, params, stages=False)
     assert bare.stages == {}
     ours = {"color": bare.color, "depth": bare.depth}
     assert not (report := differences(ours, {"color": frame.color, "depth": frame.depth})), f"stages=False: {report}"

@@ -1,0 +1,85 @@
+"""What the method is given: reference images before a camera, and the law of the splats' width."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from ibr_ref.scene import Camera, DepthImage, Light, checks
+
+SHAPES = ("square", "disc")
+
+MOST_POINTS = 2**31 - 1
+"""Points of a scene: their indices are 32-bit integers."""
+
+WIDEST = 2.0**20
+"""Largest width of a splat, pixels."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scene:
+    """Reference images of one object or place, seen by another camera. On a tie in depth the earlier image wins.
+
+    Raises ValueError if there is no image, none of them has a valid pixel, or something is not what it should be.
+    """
+
+    images: Sequence[DepthImage]
+    """At least one; `vertex.source` names them by their index here."""
+    camera: Camera
+    light: Light | None
+    """None: the images' own colours."""
+    background: ArrayLike = (0.0, 0.0, 0.0)
+    """(3,) linear colour where nothing is shown, in [0, 1]."""
+
+    def __post_init__(self) -> None:
+        if isinstance(self.images, DepthImage) or not isinstance(self.images, Iterable):
+            raise checks.reject("images", type(self.images).__name__, "a sequence of DepthImage")
+        images = tuple(self.images)
+        object.__setattr__(self, "images", images)
+        for i, image in enumerate(images):
+            if not isinstance(image, DepthImage):
+                raise checks.reject(f"images[{i}]", type(image).__name__, "DepthImage")
+        points = sum(int(image.arrays[2].sum()) for image in images)
+        if not 0 < points <= MOST_POINTS:
+            found = f"{len(images)} images with {points} valid pixels (mask)"
+            raise checks.reject("images", found, f"from 1 to {MOST_POINTS} valid pixels in all")
+        if not isinstance(self.camera, Camera):
+            raise checks.reject("camera", type(self.camera).__name__, "Camera")
+        if self.light is not None and not isinstance(self.light, Light):
+            raise checks.reject("light", type(self.light).__name__, "Light, or None for the images' own colours")
+        object.__setattr__(self, "background", checks.color("background", self.background))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Params:
+    """The law of the width, W_s = alpha / (beta d^2 + gamma d + delta), and how splats are drawn (section 3.3).
+
+    d is the distance from the eye to the point in world units (orthographic: along the view axis). The defaults are a
+    constant width of one pixel. The denominator must be positive for every point in view, or `render` raises ValueError.
+    """
+
+    alpha: float = 1.0
+    """> 0, pixels."""
+    beta: float = 0.0
+    gamma: float = 0.0
+    delta: float = 1.0
+    min_width: float = 1.0
+    """Pixels, >= 0."""
+    max_width: float = 64.0
+    """Pixels, >= min_width."""
+    shape: str = "square"
+    """"square" | "disc"."""
+    max_atlas_size: int = 4096
+    """Pixels a side of each of the atlas' four pages."""
+
+    def __post_init__(self) -> None:
+        set_field = object.__setattr__
+        set_field(self, "alpha", checks.number("alpha", self.alpha, above=0.0))
+        for name in ("beta", "gamma", "delta"):
+            set_field(self, name, checks.number(name, getattr(self, name)))
+        set_field(self, "min_width", checks.number("min_width", self.min_width, low=0.0, high=WIDEST))
+        set_field(self, "max_width", checks.number("max_width", self.max_width, low=self.min_width, high=WIDEST))
+        checks.choice("shape", self.shape, SHAPES)
+        set_field(self, "max_atlas_size", checks.whole("max_atlas_size", self.max_atlas_size, low=1, high=65536))
