@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,29 +38,38 @@ class AreaLight:
         for name in ("position", "target", "up"):
             object.__setattr__(self, name, checks.vector(name, getattr(self, name)))
         object.__setattr__(self, "half_edges", checks.matrix("half_edges", self.half_edges, 2, 3))
-        camera = self.camera(1)
-        object.__setattr__(self, "near", camera.near)
-        object.__setattr__(self, "far", camera.far)
+        for name in ("near", "far"):
+            object.__setattr__(self, name, getattr(self._centre, name))
         object.__setattr__(self, "vertical_fov", float(self.vertical_fov))
 
-    def camera(self, size: int, position: ArrayLike | None = None) -> Camera:
-        """What the light sees in a map of `size` x `size`; from another position it looks the same way, bit for bit."""
-        centre = Camera.look_at(
+    @cached_property
+    def _centre(self) -> Camera:
+        """The camera of the centre, for a picture of one pixel: its focal length is the same in x and y, to the last bit."""
+        return Camera.look_at(
             eye=self.position,
             target=self.target,
             up=self.up,
             vertical_fov=self.vertical_fov,
             near=self.near,
             far=self.far,
+            width=1,
+            height=1,
+        )
+
+    def camera(self, size: int, position: ArrayLike | None = None) -> Camera:
+        """What the light sees in a map of `size` x `size`; from another position it looks the same way, bit for bit."""
+        eye = self.arrays[0] if position is None else checks.vector("position", position)
+        view = self._centre.view_from_world.copy()
+        view[:3, 3] = [-dot(axis, eye) for axis in view[:3, :3]]
+        return Camera(
+            view_from_world=view,
+            clip_from_view=self._centre.clip_from_view,
+            near=self.near,
+            far=self.far,
             width=size,
             height=size,
+            eye=np.append(eye, 1.0),
         )
-        if position is None:
-            return centre
-        moved = checks.vector("position", position)
-        view = centre.view_from_world.copy()
-        view[:3, 3] = [-dot(axis, moved) for axis in view[:3, :3]]
-        return replace(centre, view_from_world=view, eye=np.append(moved, 1.0))
 
     @property
     def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

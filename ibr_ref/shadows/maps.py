@@ -5,7 +5,7 @@ A map is rendered with the light at its centre and the object moved: only where 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,16 @@ def positions(low: Array, high: Array, light: Array) -> Array:
         middle = min(max(own, least), most)
         axes.append((least, (least + most) / 2.0 if middle in (least, most) else middle, most))
     return np.stack(np.meshgrid(*axes), axis=-1)
+
+
+def levels(k: int) -> Array:
+    """(256,) coverage by the count of a texel's samples: count / k^2."""
+    return np.arange(256) / float(k * k)
+
+
+def values(texels: NDArray[Any], k: int) -> Array:
+    """A map's texels as numbers from 0 to 1: the coverage that counts of k x k samples stand for, or depths."""
+    return levels(k)[texels] if texels.dtype == np.uint8 else np.asarray(texels, np.float64)
 
 
 def _triangles(view: View, offset: Array, size: int) -> Triangles:

@@ -41,7 +41,7 @@ Project
 19. quantize: r - bias below 0 is not clamped first. The margin is in units of depth: steps of floor(255 x + 0.5)
     divided by 255. Masks are not quantized.
 Accumulate
-20. sum + shadow (1/N), in sample order; no clamp with "float", so nine full shadows may give 1 by an ulp more or less.
+20. sum + shadow (1/N), in sample order; with "float" the last sum is clamped to 1, above which rounding may carry it.
     "unorm8": alpha = round(1/N); each sum is clamped to 1, then rounded.
 Resolve
 21. brightness = ambient + ((1 - ambient) (1 - shadow)) max(0, n.l); n from the triangle's world vertices, turned where
@@ -160,7 +160,7 @@ def accumulated(shadows: list[float], accumulation: str) -> float:
         total = total + shadow * alpha
         if accumulation == "unorm8":
             total = rounded(total)
-    return total
+    return min(total, 1.0)
 
 
 def accumulate(shadows: list[np.ndarray], accumulation: str) -> np.ndarray:
