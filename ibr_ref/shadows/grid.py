@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ibr_ref.pipeline.sampling import lerp
 from ibr_ref.shadows import haar, maps
 from ibr_ref.shadows.inputs import Params, Scene
-from ibr_ref.shadows.prepare import source_of, texels_at, view_of
+from ibr_ref.shadows.prepared import source_of, texels_at, view_of
 from ibr_ref.shadows.samples import samples_of, widened_range
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ from ibr_ref.shadows import grid
 from ibr_ref.shadows.grid import MapGrid
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.maps import values
-from ibr_ref.shadows.prepare import Maps, check_unfolded, prepare, source_of, texels_at, view_of
+from ibr_ref.shadows.prepared import Maps, check_unfolded, prepare, source_of, texels_at, view_of
 from ibr_ref.shadows.project import DEPTH, DEPTH_PCF, MASK, Lookup, Projected, project
 from ibr_ref.shadows.resolve import accumulate, resolve
 from ibr_ref.shadows.samples import Sample, samples_of, seen_offset
