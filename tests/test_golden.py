@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 import hashlib
+import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ibr_ref import displacement
-from ibr_ref.displacement import render
+from ibr_ref import displacement, splatting
+from tests import golden
 from tests.agreement import check_agreement
-from tests.displacement import golden
-from tests.naive import displacement as twin
+from tests.naive import displacement as displacement_twin
+from tests.naive import splatting as splatting_twin
+
+TWINS = {"displacement": (displacement, displacement_twin), "splatting": (splatting, splatting_twin)}
 
 
 @pytest.mark.parametrize("name", golden.SCENES)
 def test_frame_is_golden(name: str) -> None:
-    changed = golden.changed(golden.digests(name), golden.golden()[name])
-    assert not changed, f"{name}: {changed} changed; if that was meant: python -m tests.displacement.golden --write"
+    changed = golden.changed(golden.digests(golden.rendered(name)), golden.golden()[name])
+    assert not changed, f"{name}: {changed} changed; if that was meant: python -m tests.golden --write"
 
 
-@pytest.mark.parametrize("name", [name for name in golden.SCENES if name != "exact"])
+@pytest.mark.parametrize("name", [name for name in golden.SCENES if name != "displacement/exact"])
 def test_scene_agrees_with_the_naive_twin(name: str) -> None:
     """On a smaller picture; the twin has no exact search."""
-    check_agreement(displacement, twin, *golden.SCENES[name](64, 48))
+    check_agreement(*TWINS[name.split("/")[0]], *golden.SCENES[name](64, 48))
 
 
 def test_file_holds_these_scenes_only() -> None:
@@ -31,9 +35,22 @@ def test_file_holds_these_scenes_only() -> None:
 
 
 def test_every_scene_shows_something() -> None:
-    for name, scene in golden.SCENES.items():
-        shown = render(*scene(48, 36), stages=False).depth < 1.0
+    for name in golden.SCENES:
+        shown = golden.rendered(name, 48, 36).depth < 1.0
         assert shown.mean() > 0.2, name
+
+
+def test_writing_a_scene_keeps_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And the order of all, whichever was written last."""
+    kept = golden.golden()
+    monkeypatch.setattr(golden, "GOLDEN", tmp_path / "golden.json")
+    golden.write(dict(reversed({**kept, "displacement/box": {"color": "0"}}.items())))
+    again = golden.golden()
+    assert list(again) == list(kept)
+    assert {name: arrays for name, arrays in again.items() if arrays != kept[name]} == {
+        "displacement/box": {"color": "0"}
+    }
+    assert list(json.loads(golden.GOLDEN.read_text())) == list(golden.METHODS)
 
 
 def test_digest_sees_values_types_and_shapes() -> None:
