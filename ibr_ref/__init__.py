@@ -34,14 +34,25 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ibr_ref import displacement, io, models, splatting
+    from ibr_ref import displacement, io, models, shadows, splatting
     from ibr_ref.scene import BasePolygon, Camera, DepthImage, Light, Mesh
 
 __version__ = "0.1.0"
 
-__all__ = ["BasePolygon", "Camera", "DepthImage", "Light", "Mesh", "displacement", "io", "models", "splatting"]
+__all__ = [
+    "BasePolygon",
+    "Camera",
+    "DepthImage",
+    "Light",
+    "Mesh",
+    "displacement",
+    "io",
+    "models",
+    "shadows",
+    "splatting",
+]
 
-_MODULES = ("displacement", "io", "models", "splatting")
+_MODULES = ("displacement", "io", "models", "shadows", "splatting")
 
 
 def __getattr__(name: str) -> Any:

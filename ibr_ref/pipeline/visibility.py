@@ -1,4 +1,4 @@
-"""Meshes with a depth buffer: which triangle each pixel shows, its depth, and varyings there.
+"""Meshes with a depth buffer: which triangle each pixel shows, its depth, and varyings there; or their silhouette alone.
 
 For passes without discard or depth changes in the fragment stage. Triangles are sorted into bands of rows; a band
 belongs to one thread, which draws its triangles in submission order, so that ties go to the earlier one.
@@ -45,6 +45,16 @@ def _sort_into_bands(rows, ends, members):
                 ends[band] += 1
 
 
+def _bands(triangles: Triangles, height: int) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Triangles of all bands, each band's in submission order, and where each band's begin and the last one's end."""
+    counts = np.zeros(-(-height // BAND_ROWS), np.int64)
+    _count_in_bands(triangles.rows, counts)
+    starts = np.concatenate([np.zeros(1, np.int64), np.cumsum(counts)])
+    members = np.empty(int(starts[-1]), np.int32)
+    _sort_into_bands(triangles.rows, starts[:-1].copy(), members)
+    return members, starts
+
+
 @device
 def _draw_triangle(triangles, t, first_row, last_row, spare, winner, depth):
     """Depth-test one triangle in the rows [first_row, last_row) of the picture."""
@@ -79,14 +89,38 @@ def _draw(triangles, members, starts, winner, depth):
 
 def visible(triangles: Triangles, width: int, height: int) -> Visible:
     """Rasterize triangles with the depth test LESS against a buffer cleared to 1."""
-    counts = np.zeros(-(-height // BAND_ROWS), np.int64)
-    _count_in_bands(triangles.rows, counts)
-    starts = np.concatenate([np.zeros(1, np.int64), np.cumsum(counts)])
-    members = np.empty(int(starts[-1]), np.int32)
-    _sort_into_bands(triangles.rows, starts[:-1].copy(), members)
+    members, starts = _bands(triangles, height)
     result = Visible(np.empty((height, width), np.int32), np.empty((height, width)))
     _draw(triangles, members, starts, *result)
     return result
+
+
+@device
+def _cover_band(triangles, members, first_row, last_row, out):
+    for row in range(first_row, last_row):
+        for column in range(out.shape[1]):
+            out[row, column] = 0
+    for t in members:
+        for row in range(max(first_row, triangles.rows[t, 0]), min(last_row, triangles.rows[t, 1])):
+            first, stop = columns_in_row(edges_in_row(triangles.x[t], triangles.y[t], row), out.shape[1])
+            for column in range(first, stop):
+                out[row, column] = 1
+
+
+@kernel
+def _cover(triangles, members, starts, out):
+    for band in prange(len(starts) - 1):
+        first_row = band * BAND_ROWS
+        last_row = min(out.shape[0], first_row + BAND_ROWS)
+        _cover_band(triangles, members[starts[band] : starts[band + 1]], first_row, last_row, out)
+
+
+def covered(triangles: Triangles, width: int, height: int) -> NDArray[np.uint8]:
+    """(H, W) 1 where any triangle covers the pixel, else 0: no depth test, the silhouette alone."""
+    members, starts = _bands(triangles, height)
+    out = np.empty((height, width), np.uint8)
+    _cover(triangles, members, starts, out)
+    return out
 
 
 @device

@@ -1,0 +1,97 @@
+"""Stage controls: where the same feature of the shadow is in each of the nine maps.
+
+The paper places the control points by hand and names automatic placement as the open problem (section 5). A placement is
+valid if the border of every grid lies on the border of the map, so that the mesh covers it, and no triangle is folded, in
+the nine grids and in all that are interpolated between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.pipeline.triangles import SUBPIXELS
+from ibr_ref.shadows.warp import grid_triangles
+
+Array = NDArray[np.float64]
+
+_LEAST_GAP = 1.0 / 64.0
+"""Between the lines of a grid, as a share of the map."""
+
+_PADDING = 1.0 / 64.0
+"""Around the silhouette, so that its outline is not on the border of a cell."""
+
+
+def regular(rows: int, columns: int) -> Array:
+    """(R, C, 2) evenly spaced points: the grid of a warp that changes nothing."""
+    return _crossing(np.linspace(0.0, 1.0, columns), np.linspace(0.0, 1.0, rows))
+
+
+def _crossing(u: Array, v: Array) -> Array:
+    return np.stack(np.meshgrid(u, v), axis=-1)
+
+
+def folded(grid: Array) -> int | None:
+    """Index of the first triangle of a grid whose area is not positive, in the order in which they are drawn, if any."""
+    a, b, c = np.moveaxis(grid_triangles(grid), 1, 0)
+    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    bad = np.flatnonzero(~(area > 0.0))
+    return int(bad[0]) if len(bad) else None
+
+
+def on_lattice(controls: Array, size: int) -> Array:
+    """The points moved to the 1/256 texel to which windows are snapped: warps to their own grids then change nothing."""
+    steps = float(size * SUBPIXELS)
+    return np.rint(controls * steps) / steps
+
+
+def identity(images: Array, rows: int, columns: int) -> Array:
+    """(3, 3, R, C, 2) regular grids: the maps are mixed where they are."""
+    return np.broadcast_to(regular(rows, columns), (3, 3, rows, columns, 2)).copy()
+
+
+def bounds(images: Array, rows: int, columns: int) -> Array:
+    """(3, 3, R, C, 2) grids whose inner lines divide the silhouette's bounding box; their outer ones are the border.
+
+    Lines stay lines between the maps, so that nothing folds. Without a silhouette in each map, `identity`.
+    """
+    boxes = [[_bounding_box(image) for image in line] for line in images]
+    if any(box is None for line in boxes for box in line):
+        return identity(images, rows, columns)
+    grids = [[_crossing(_lines(*box[0], columns), _lines(*box[1], rows)) for box in line if box] for line in boxes]
+    return np.array(grids)
+
+
+def _bounding_box(image: Array) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """((u0, u1), (v0, v1)) of what is not empty; the lookups of a mask or of 1 - depth are > 0 there."""
+    size = len(image)
+    rows, columns = np.flatnonzero((image > 0.0).any(axis=1)), np.flatnonzero((image > 0.0).any(axis=0))
+    if not len(rows):
+        return None
+    return (columns[0] / size, (columns[-1] + 1) / size), (rows[0] / size, (rows[-1] + 1) / size)
+
+
+def _lines(low: float, high: float, count: int) -> Array:
+    """`count` coordinates from 0 to 1, the inner ones evenly from `low` to `high` (one: in the middle), well apart."""
+    inner = count - 2
+    if inner < 1:
+        return np.linspace(0.0, 1.0, count)
+    gap = min(_LEAST_GAP, 1.0 / (2 * count))
+    low, high = (low + high) / 2.0 if inner == 1 else low - _PADDING, high + _PADDING
+    low = min(max(low, gap), 1.0 - gap * inner)
+    high = min(max(high, low + gap * (inner - 1)), 1.0 - gap)
+    return np.concatenate([[0.0], np.linspace(low, high, inner), [1.0]])
+
+
+PLACEMENTS: dict[str, Callable[[Array, int, int], Array]] = {"bounds": bounds, "identity": identity}
+"""The automatic placements, by name: (3, 3, S, S) silhouettes, R and C to (3, 3, R, C, 2) controls."""
+
+
+def place(name: str, images: Array, rows: int, columns: int) -> Array:
+    """Controls (3, 3, R, C, 2) by one of `PLACEMENTS`, on the lattice of the window.
+
+    images (3, 3, S, S): silhouettes, 0 where empty and above it elsewhere.
+    """
+    return on_lattice(PLACEMENTS[name](images, rows, columns), images.shape[2])

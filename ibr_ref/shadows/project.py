@@ -1,0 +1,194 @@
+"""Stage project: a map as a texture that the light throws onto what is seen (section 2.2)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.jit import device, kernel, prange
+from ibr_ref.pipeline.sampling import fetch, footprint, lerp, nearest_index
+
+Array = NDArray[np.float64]
+
+MASK, DEPTH, DEPTH_PCF = range(3)
+
+
+class Lookup(NamedTuple):
+    """How a map is read."""
+
+    mode: int
+    """MASK, DEPTH or DEPTH_PCF."""
+    quantized: bool
+    """Both sides of a comparison of depths in 8 bits."""
+    bias: float
+    caster: int
+    """The first of the caster's triangles: in a mask they and those after it are lit."""
+    keep: bool
+    """Whether coordinates and margins are written too."""
+
+
+class Projected(NamedTuple):
+    """The arrays of the stage, for one light sample; but for `shadow` empty where they are not kept."""
+
+    coord: Array
+    """(H, W, 3) s, t and r; 0 where no surface is."""
+    shadow: Array
+    """(H, W) 0 lit to 1."""
+    margin: Array
+    """(H, W)."""
+    texel_margin: Array
+    """(H, W)."""
+
+
+@device
+def _transform(view, clip, x, y, z):
+    """Clip coordinates x, y, z, w of a world position, by one matrix after the other."""
+    view_x = view[0, 0] * x + view[0, 1] * y + view[0, 2] * z + view[0, 3]
+    view_y = view[1, 0] * x + view[1, 1] * y + view[1, 2] * z + view[1, 3]
+    view_z = view[2, 0] * x + view[2, 1] * y + view[2, 2] * z + view[2, 3]
+    return (
+        clip[0, 0] * view_x + clip[0, 1] * view_y + clip[0, 2] * view_z + clip[0, 3],
+        clip[1, 0] * view_x + clip[1, 1] * view_y + clip[1, 2] * view_z + clip[1, 3],
+        clip[2, 0] * view_x + clip[2, 1] * view_y + clip[2, 2] * view_z + clip[2, 3],
+        clip[3, 0] * view_x + clip[3, 1] * view_y + clip[3, 2] * view_z + clip[3, 3],
+    )
+
+
+@device
+def _locate_row(world, view, clip, coord):
+    """s, t, r and q_w of a row of fragments, into coord (4, W): the bias matrix is s = (x + q_w)/2, t = (q_w - y)/2."""
+    for i in range(len(world)):
+        x, y, z, w = _transform(view, clip, world[i, 0], world[i, 1], world[i, 2])
+        r = z / w
+        r = r if r > 0.0 else 0.0
+        coord[0, i] = (0.5 * x + 0.5 * w) / w
+        coord[1, i] = (-0.5 * y + 0.5 * w) / w
+        coord[2, i] = r if r < 1.0 else 1.0
+        coord[3, i] = w
+
+
+@device
+def _on_map(coord, i):
+    """In front of the light and on its map, the border included."""
+    s, t = coord[0, i], coord[1, i]
+    return (coord[3, i] > 0.0) & (s >= 0.0) & (s <= 1.0) & (t >= 0.0) & (t <= 1.0)
+
+
+@device
+def _to_byte(x):
+    return np.floor(255.0 * x + 0.5)
+
+
+@device
+def _to_step(x):
+    """Distance, in units of x, to where its rounding to 8 bits changes."""
+    y = 255.0 * x + 0.5
+    f = y - np.floor(y)
+    return min(f, 1.0 - f) / 255.0
+
+
+@device
+def _compare(depth, texel, quantized):
+    """Whether a depth, its bias subtracted, lies behind a texel's, as 0 or 1; and the margin of that."""
+    if quantized:
+        behind = _to_byte(depth) > _to_byte(texel)
+        margin = min(_to_step(depth), _to_step(texel))
+    else:
+        behind = depth > texel
+        margin = abs(depth - texel)
+    return (1.0 if behind else 0.0), margin
+
+
+@device
+def _compare_four(texels, size, s, t, depth, quantized):
+    """The bilinear mix of the four comparisons around (s, t), and their smallest margin."""
+    i00, i10, i01, i11, fx, fy = footprint(s, t, size, size, None)
+    c00, m00 = _compare(depth, texels[i00], quantized)
+    c10, m10 = _compare(depth, texels[i10], quantized)
+    c01, m01 = _compare(depth, texels[i01], quantized)
+    c11, m11 = _compare(depth, texels[i11], quantized)
+    return lerp(lerp(c00, c10, fx), lerp(c01, c11, fx), fy), min(min(m00, m10), min(m01, m11))
+
+
+@device
+def _look_up(texels, size, coord, i, caster, lookup):
+    """The shadow on a fragment, and the margin of its comparisons: infinite where nothing is compared."""
+    s, t = coord[0, i], coord[1, i]
+    if not _on_map(coord, i):
+        return 0.0, np.inf
+    if lookup.mode == MASK:
+        return (0.0 if caster else fetch(texels, size, size, None, s, t)), np.inf
+    depth = coord[2, i] - lookup.bias
+    if lookup.mode == DEPTH_PCF:
+        return _compare_four(texels, size, s, t, depth, lookup.quantized)
+    return _compare(depth, texels[nearest_index(s, t, size, size, None)], lookup.quantized)
+
+
+@device
+def _edge_distance(x):
+    f = x - np.floor(x)
+    return min(f, 1.0 - f)
+
+
+@device
+def _keep(coord, i, size, margin, row, column, result):
+    """The arrays that are kept with a fragment's shadow."""
+    for k in range(3):
+        result.coord[row, column, k] = coord[k, i]
+    nearest = min(_edge_distance(coord[0, i] * size), _edge_distance(coord[1, i] * size))
+    result.margin[row, column] = margin
+    result.texel_margin[row, column] = nearest if coord[3, i] > 0.0 else np.inf
+
+
+@device
+def _keep_nothing(row, column, result):
+    """Where no surface is."""
+    for k in range(3):
+        result.coord[row, column, k] = 0.0
+    result.margin[row, column] = np.inf
+    result.texel_margin[row, column] = np.inf
+
+
+@device
+def _project_row(triangle, varyings, view, clip, texels, size, lookup, row, result):
+    columns = triangle.shape[1]
+    coord = np.empty((4, columns))
+    _locate_row(varyings[row], view, clip, coord)
+    for i in range(columns):
+        shadow, margin = 0.0, np.inf
+        seen = triangle[row, i] >= 0
+        if seen:
+            shadow, margin = _look_up(texels, size, coord, i, triangle[row, i] >= lookup.caster, lookup)
+        result.shadow[row, i] = shadow
+        if lookup.keep and seen:
+            _keep(coord, i, size, margin, row, i, result)
+        elif lookup.keep:
+            _keep_nothing(row, i, result)
+
+
+@kernel
+def _project(triangle, varyings, view, clip, texels, size, lookup, result):
+    for row in prange(triangle.shape[0]):
+        _project_row(triangle, varyings, view, clip, texels, size, lookup, row, result)
+
+
+def project(
+    triangle: NDArray[np.int32],
+    varyings: Array,
+    view_from_world: Array,
+    clip_from_view: Array,
+    image: Array,
+    lookup: Lookup,
+) -> Projected:
+    """Project a map (S, S) from a light with these matrices onto what the camera sees.
+
+    triangle (H, W), varyings (H, W, 3 or more): those of the `Surface`.
+    """
+    height, width = triangle.shape
+    kept = (height, width) if lookup.keep else (0, 0)
+    result = Projected(np.empty((*kept, 3)), np.empty((height, width)), np.empty(kept), np.empty(kept))
+    size = float(len(image))
+    _project(triangle, varyings, view_from_world, clip_from_view, image.reshape(-1), size, lookup, result)
+    return result

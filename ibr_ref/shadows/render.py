@@ -1,0 +1,193 @@
+"""The passes of shadows by image warping, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.io import Frame
+from ibr_ref.scene import checks
+from ibr_ref.shadows import grid
+from ibr_ref.shadows.grid import MapGrid
+from ibr_ref.shadows.inputs import Params, Scene
+from ibr_ref.shadows.maps import values
+from ibr_ref.shadows.prepared import Maps, check_unfolded, prepare, source_of, texels_at, view_of
+from ibr_ref.shadows.project import DEPTH, DEPTH_PCF, MASK, Lookup, Projected, project
+from ibr_ref.shadows.resolve import accumulate, resolve
+from ibr_ref.shadows.samples import Sample, samples_of, seen_offset
+from ibr_ref.shadows.surface import Object, Surface, see
+from ibr_ref.shadows.vertex import place
+from ibr_ref.shadows.warp import Warped, grids_at, locate, warp_stage
+
+Array = NDArray[np.float64]
+
+
+def render(
+    scene: Scene, params: Params | None = None, *, maps: Maps | MapGrid | None = None, stages: bool = True
+) -> Frame:
+    """Draw receivers and caster with the caster's shadow.
+
+    maps: what `prepare` made for this scene's caster, axes and light, for any offset (for method="grid" `prepare_grid`);
+    None: made here, at every call. With `stages` the frame holds every intermediate array (`shadows.__doc__` lists
+    them); without, the same picture and depth sooner. Raises ValueError for inputs that only together are not allowed,
+    and for maps that do not fit the scene and the parameters.
+    """
+    params = Params() if params is None else params
+    samples = samples_of(scene, params)
+    images, kept = _images(scene, params, samples, maps, stages)
+    surface = _surface(scene)
+    lookup = _lookup(scene, params, stages)
+    shadow = np.zeros(surface.depth.shape)
+    projections = []
+    for sample, image in zip(samples, images, strict=True):
+        camera = scene.light.camera(params.map_size, sample.position)
+        projected = project(
+            surface.triangle, surface.varyings, camera.view_from_world, camera.clip_from_view, image, lookup
+        )
+        accumulate(shadow, projected.shadow, len(samples), params.accumulation == "unorm8")
+        if stages:
+            projections.append(projected)
+    np.minimum(shadow, 1.0, out=shadow)  # N times 1/N may come out an ulp above 1
+    light, background = scene.light.arrays[0], np.asarray(scene.background)
+    color = resolve(surface, shadow, scene.camera.eye, light, float(scene.ambient), background)
+    if stages:
+        kept.update(_grouped("project", Projected._fields, projections), **{"accumulate.shadow": shadow})
+    return Frame(color=color, depth=surface.depth, stages=kept)
+
+
+# --- The maps that are projected -------------------------------------------------------------------------------------
+
+
+def _images(
+    scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None, stages: bool
+) -> tuple[list[Array], dict[str, Any]]:
+    """A map (S, S) for each light sample, and the stages up to it."""
+    if params.method == "warp":
+        return _warped(scene, params, samples, _nine(scene, params, samples, maps), stages)
+    if params.method == "grid":
+        images = _from_grid(scene, params, samples, maps)
+    elif maps is not None:
+        raise checks.reject("maps", type(maps).__name__, 'None with method="direct"')
+    else:
+        images = [_direct(scene, params, sample) for sample in samples]
+    return images, {"warp.image": _per_sample(images)} if stages else {}
+
+
+def _direct(scene: Scene, params: Params, sample: Sample) -> Array:
+    """The map as it is rendered from the sample, of the caster where it is."""
+    view = view_of(scene, params.map_size, sample.position)
+    return values(texels_at(view, np.asarray(scene.offset), params), params.map_samples)
+
+
+def _nine(scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None) -> Maps:
+    if maps is None:
+        return prepare(scene, params)
+    if not isinstance(maps, Maps):
+        raise checks.reject("maps", type(maps).__name__, 'Maps, or None, with method="warp"')
+    given = {
+        "map_size": maps.size,
+        "content": maps.content,
+        "map_samples": maps.samples,
+        "rows": maps.controls.shape[2],
+        "columns": maps.controls.shape[3],
+    }
+    _check_made_for(scene, params, given, maps.source)
+    x, y = maps.lines
+    _check_range(scene, samples, np.array([(x[0], y[0]), (x[2], y[2])]))
+    return maps
+
+
+def _check_made_for(scene: Scene, params: Params, given: dict[str, object], source: str) -> None:
+    for name, value in given.items():
+        if value != getattr(params, name):
+            raise checks.reject(f"maps ({name})", value, f"{getattr(params, name)}, as in params")
+    if source != source_of(scene):
+        raise checks.reject("maps", "those of another caster, other axes or another light", "maps of this scene")
+
+
+def _check_range(scene: Scene, samples: Sequence[Sample], ends: Array) -> None:
+    for sample in samples:
+        offset = seen_offset(scene, sample)
+        if not ((ends[0] <= offset) & (offset <= ends[1])).all():
+            (x0, y0), (x1, y1) = ends.tolist()
+            raise checks.reject(
+                "maps",
+                f"an object at {tuple(offset.tolist())} as a light sample sees it",
+                f"x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, where the maps were made",
+            )
+
+
+def _warped(
+    scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps, stages: bool
+) -> tuple[list[Array], dict[str, Any]]:
+    outside = 0.0 if params.content == "mask" else 1.0
+    warps = []
+    for i, sample in enumerate(samples):
+        cell, fraction = locate(maps.positions, seen_offset(scene, sample))
+        _check_grids(maps.controls, cell, fraction, i)
+        nearest = params.policy == "nearest"
+        warps.append(warp_stage(maps.texels, maps.levels, maps.controls, cell, fraction, nearest, outside))
+    images = [w.image for w in warps]
+    if not stages:
+        return images, {}
+    made = {"maps.positions": maps.positions, "maps.image": maps.image, "controls": maps.controls}
+    return images, {**made, **_grouped("warp", Warped._fields, warps)}
+
+
+def _check_grids(controls: Array, cell: NDArray[np.int32], fraction: Array, sample: int) -> None:
+    row_grids, between = grids_at(controls, cell, fraction)
+    for name, points in (("row_grids[0]", row_grids[0]), ("row_grids[1]", row_grids[1]), ("grid", between)):
+        check_unfolded(f"controls (warp.{name} of light sample {sample})", points)
+
+
+def _from_grid(scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None) -> list[Array]:
+    lookup, ends = grid.rendered(scene, params), grid.ends_of(scene, params)
+    if maps is not None:
+        if not isinstance(maps, MapGrid):
+            raise checks.reject("maps", type(maps).__name__, 'MapGrid, or None, with method="grid"')
+        given = {
+            "map_size": maps.size,
+            "content": maps.content,
+            "map_samples": maps.samples,
+            "grid_size": maps.count,
+            "grid_storage": maps.storage,
+        }
+        _check_made_for(scene, params, given, maps.source)
+        _check_range(scene, samples, maps.ends)
+        lookup, ends = maps.image, maps.ends
+    offsets = [seen_offset(scene, sample) for sample in samples]
+    return [grid.image_at(lookup, ends, params.grid_size, offset, params.grid_mix) for offset in offsets]
+
+
+# --- What they are projected onto ------------------------------------------------------------------------------------
+
+
+def _surface(scene: Scene) -> Surface:
+    objects = [
+        Object(np.asarray(mesh.vertices), np.asarray(mesh.triangles), np.asarray(mesh.color))
+        for mesh in (*scene.receivers, scene.caster)
+    ]
+    objects[-1] = objects[-1]._replace(vertices=place(objects[-1].vertices, scene.axes, np.asarray(scene.offset)))
+    camera = scene.camera
+    return see(objects, camera.view_from_world, camera.clip_from_view, camera.width, camera.height)
+
+
+def _lookup(scene: Scene, params: Params, keep: bool) -> Lookup:
+    mode = MASK if params.content == "mask" else DEPTH_PCF if params.pcf else DEPTH
+    caster = sum(len(np.asarray(mesh.triangles)) for mesh in scene.receivers)
+    return Lookup(mode, params.quantize is not None, float(params.bias), caster, keep)
+
+
+# --- Stages ----------------------------------------------------------------------------------------------------------
+
+
+def _per_sample(arrays: Sequence[NDArray[np.generic]]) -> NDArray[np.generic]:
+    """Along a leading axis of samples, which a single one does not have."""
+    return np.stack(arrays) if len(arrays) > 1 else arrays[0]
+
+
+def _grouped(group: str, names: Sequence[str], results: Sequence[Any]) -> dict[str, Any]:
+    return {f"{group}.{name}": _per_sample([getattr(result, name) for result in results]) for name in names}

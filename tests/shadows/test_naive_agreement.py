@@ -1,0 +1,91 @@
+"""The package agrees with the naive twin bit for bit, on drawn scenes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+import numba
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, Phase, given, seed, settings
+
+from ibr_ref import shadows
+from ibr_ref.io import Frame
+from tests.agreement import arrays_of, differences, flat
+from tests.naive import shadows as twin
+from tests.shadows.strategies import Case, cases
+
+SCENES = 120
+
+seen: Counter[str] = Counter()
+"""In how many of the drawn scenes each feature occurred."""
+
+
+def agree(case: Case) -> None:
+    """Render with the package and with the twin, and compare everything; the picture alone is the same one."""
+    scene, params = case.scene, case.params
+    maps = shadows.prepare(scene, params, controls=case.controls) if params.method == "warp" else None
+    frame = shadows.render(scene, params, maps=maps)
+    stages, color, depth = twin.render(scene, params, case.controls)
+    theirs = {**flat(stages), "color": color, "depth": depth}
+    assert not (report := differences(arrays_of(frame), theirs)), report
+    bare = shadows.render(scene, params, maps=maps, stages=False)
+    assert bare.stages == {}
+    assert np.array_equal(bare.color, frame.color)
+    assert np.array_equal(bare.depth, frame.depth)
+    seen.update(["scenes", *features(case, frame)])
+
+
+def features(case: Case, frame: Frame) -> set[str]:
+    """What occurs in a scene that a test of agreement must have seen."""
+    params, stages = case.params, frame.stages
+    shadow, coord = np.asarray(stages["accumulate.shadow"]), np.asarray(stages["project.coord"])
+    texel_margin = np.asarray(stages["project.texel_margin"])
+    surface = np.broadcast_to(frame.depth < 1.0, texel_margin.shape)
+    count = len(params.light_samples) if isinstance(params.light_samples, np.ndarray) else params.light_samples
+    return {
+        f"method {params.method}",
+        f"content {params.content}",
+        f"policy {params.policy}",
+        f"samples {count}",
+        f"accumulation {params.accumulation}",
+        f"quantize {params.quantize} {params.content}",
+        f"pcf {params.pcf} {params.content}",
+        f"map samples {params.map_samples}",
+        f"mix {params.grid_mix} {params.method}",
+        *(["shadow"] if (shadow > 0.0).any() else []),
+        *(["half shadow"] if ((shadow > 0.1) & (shadow < 0.9)).any() else []),
+        *(["beside the map"] if (np.abs(coord[..., :2] - 0.5).max() > 0.5) else []),
+        *(["behind the light"] if (np.isinf(texel_margin) & surface).any() else []),
+        *(["beyond the far plane"] if (coord[..., 2] == 1.0).any() else []),
+        *(["on a middle line"] if "warp.fraction" in stages and (stages["warp.fraction"] == 0.0).any() else []),
+        *(["at the end"] if "warp.fraction" in stages and (stages["warp.fraction"] == 1.0).any() else []),
+    }
+
+
+@pytest.fixture
+def one_thread() -> Iterator[None]:
+    """Pictures of a few hundred pixels are slower on several threads."""
+    before = numba.get_num_threads()
+    numba.set_num_threads(1)
+    yield
+    numba.set_num_threads(before)
+
+
+def run_scene(number: int) -> None:
+    """Draw the simplest scene and a random one, each run with a seed of its own, and compare both."""
+    chosen = settings(
+        max_examples=2,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    seed(number)(chosen(given(case=cases())(agree)))()
+
+
+@pytest.mark.parametrize("number", range(SCENES))
+def test_drawn_scene_agrees(number: int, one_thread: None) -> None:
+    run_scene(number)
