@@ -14,7 +14,7 @@ REACH = 0.6
 """The caster's offset on either axis, in units of its largest extent, which is 1 on the stage."""
 
 _LIGHT = (-1.5, -1.5, 3.5)
-_FIELD_OF_VIEW = 32.0
+_FIELD_OF_VIEW = 38.0
 """Degrees: the caster's shadow stays within the map wherever it is, and for every sample of the light."""
 
 _FLOOR = -0.5
