@@ -25,12 +25,13 @@ from ibr_ref import jit
 from ibr_ref.io import Frame
 from tests.agreement import flat
 from tests.displacement import golden_scenes as displacement
+from tests.shadows import golden_scenes as shadows
 from tests.splatting import golden_scenes as splatting
 
 GOLDEN = Path(__file__).parents[1] / "data" / "golden.json"
 WIDTH, HEIGHT = 160, 120
 
-METHODS: dict[str, Any] = {"displacement": displacement, "splatting": splatting}
+METHODS: dict[str, Any] = {"displacement": displacement, "splatting": splatting, "shadows": shadows}
 """Modules with SCENES, TINY (the names of those that can do without compiled kernels) and `render`."""
 
 SCENES: dict[str, Callable[[int, int], tuple[Any, ...]]] = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +15,18 @@ from tests import golden
 from tests.agreement import check_agreement
 from tests.naive import displacement as displacement_twin
 from tests.naive import splatting as splatting_twin
+from tests.shadows import golden_scenes as shadow_scenes
+from tests.shadows import twin as shadow_twin
 
-TWINS = {"displacement": (displacement, displacement_twin), "splatting": (splatting, splatting_twin)}
+TWINS: dict[str, Any] = {
+    "displacement": (displacement, displacement_twin),
+    "splatting": (splatting, splatting_twin),
+    "shadows": (shadow_scenes, shadow_twin),
+}
+"""Modules with `render`; the shadows' twin is given the controls that the golden scenes have."""
+
+WITHOUT_TWIN = ("displacement/exact", "shadows/wavelets")
+"""The twins have no exact search, and no wavelets."""
 
 
 @pytest.mark.parametrize("name", golden.SCENES)
@@ -24,9 +35,9 @@ def test_frame_is_golden(name: str) -> None:
     assert not changed, f"{name}: {changed} changed; if that was meant: python -m tests.golden --write"
 
 
-@pytest.mark.parametrize("name", [name for name in golden.SCENES if name != "displacement/exact"])
+@pytest.mark.parametrize("name", [name for name in golden.SCENES if name not in WITHOUT_TWIN])
 def test_scene_agrees_with_the_naive_twin(name: str) -> None:
-    """On a smaller picture; the twin has no exact search."""
+    """On a smaller picture."""
     check_agreement(*TWINS[name.split("/")[0]], *golden.SCENES[name](64, 48))
 
 
