@@ -1,9 +1,9 @@
 """The search of protruded displacement mapping: linear, then binary (section 3.1), then steep or not (section 4.2).
 
 All tests are on the lattice t = k/K, K = N 2^M. Fragments run in waves: each step of the search runs over all LANES in
-an inner loop, with masks instead of branches, as a GPU does; LLVM turns those loops into SIMD gathers. It only does so
-where the lanes' arrays are allocated in the same function: it must see that stores to them cannot change the texture. Where
-to sample, the fetch, and what follows from it are loops of their own: one loop for all takes half as long again.
+an inner loop, with masks instead of branches, as a GPU does; LLVM turns those loops into SIMD gathers (`pipeline.waves`
+says when). Where to sample, the fetch, and what follows from it are loops of their own: one loop for all takes half as
+long again.
 """
 
 from __future__ import annotations
