@@ -23,7 +23,7 @@ Examples:
 
     ibr-ref render shadows --caster cow.obj --samples 9 --offset 0.3,-0.2 --out cow.png
 
-    ibr-ref render shadows --caster cow.obj --controls best --maps cow.npz --samples 9 --report --out cow.png
+    ibr-ref render shadows --caster cow.obj --maps cow.npz --samples 9 --report --out cow.png
 """
 
 
@@ -50,10 +50,10 @@ class Content(StrEnum):
 
 
 class Controls(StrEnum):
-    """Quality of the control points."""
+    """Placement of the control points."""
 
-    fast = "fast"
-    best = "best"
+    bounds = "bounds"
+    identity = "identity"
 
 
 class Up(StrEnum):
@@ -87,7 +87,7 @@ def command(
     columns: Annotated[int, typer.Option(help="Control points across.")] = 5,
     policy: Annotated[Policy, typer.Option(help="Six warps a map, or three.")] = Policy.dissolve,
     content: Annotated[Content, typer.Option(help="Silhouettes, or depths.")] = Content.mask,
-    controls: Annotated[Controls, typer.Option(help="Effort that the control points are placed with.")] = Controls.fast,
+    controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = Controls.bounds,
     maps: Annotated[
         Path | None, typer.Option(help="--method warp: prepared maps are read from here, or else written here (.npz).")
     ] = None,
