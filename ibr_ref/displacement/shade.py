@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.jit import LANES, device
-from ibr_ref.pipeline.lighting import lit_channel, towards, unit
+from ibr_ref.pipeline.lighting import light_wave, lit_channel, unit
 from ibr_ref.pipeline.sampling import fetch, footprint, mix_channel
 from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, store
 
@@ -182,10 +182,7 @@ def _four(array):
 
 @device
 def light_hits(hits, count, constants, shades):
-    """Phong: albedo (ambient + diffuse lit max(0, n.l)) + specular lit max(0, r.v)^e where n.l > 0.
-
-    The power is raised by repeated squaring.
-    """
+    """Phong: albedo (ambient + diffuse lit max(0, n.l)) + specular lit max(0, r.v)^e where n.l > 0."""
     light, eye = _four(constants.light_world), _four(constants.eye_world)
     c, a = constants.corner, constants.axes
     c0, c1, c2 = c[0], c[1], c[2]
@@ -213,27 +210,9 @@ def light_hits(hits, count, constants, shades):
             x[lane] = c0 + u * u0 + v * v0 + h * h0
             y[lane] = c1 + u * u1 + v * v1 + h * h1
             z[lane] = c2 + u * u2 + v * v2 + h * h2
+        light_wave(light, eye, specular, constants.exponent, x, y, z, nx, ny, nz, lit, cosine, power, shine)
         for lane in range(LANES):
-            lx, ly, lz = towards(light, x[lane], y[lane], z[lane])
-            cosine[lane] = nx[lane] * lx + ny[lane] * ly + nz[lane] * lz
             facing[lane] = abs(cosine[lane])
-        if specular > 0.0:
-            for lane in range(LANES):
-                lx, ly, lz = towards(light, x[lane], y[lane], z[lane])
-                ex, ey, ez = towards(eye, x[lane], y[lane], z[lane])
-                twice = 2.0 * cosine[lane]
-                reflected = (twice * nx[lane] - lx) * ex + (twice * ny[lane] - ly) * ey + (twice * nz[lane] - lz) * ez
-                power[lane] = reflected if reflected > 0.0 else 0.0
-                shine[lane] = 1.0
-            exponent = constants.exponent
-            while exponent > 0:
-                for lane in range(LANES if exponent & 1 else 0):
-                    shine[lane] *= power[lane]
-                for lane in range(LANES):
-                    power[lane] *= power[lane]
-                exponent >>= 1
-            for lane in range(LANES):
-                shine[lane] = specular * lit[lane] * shine[lane] if cosine[lane] > 0.0 else 0.0
         store(facing, shades.facing_margin, first)
         for channel in range(3):
             load(shades.albedo[channel], first, colour)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.jit import device
+from ibr_ref.jit import LANES, device
 
 
 @device
@@ -27,34 +27,32 @@ def towards(homogeneous, x, y, z):
 
 
 @device
-def power(base, exponent):
-    """base^exponent by repeated squaring, lowest bit first."""
-    result = 1.0
-    while exponent > 0:
-        if exponent & 1:
-            result *= base
-        base *= base
-        exponent >>= 1
-    return result
+def light_wave(light, eye, specular, exponent, x, y, z, nx, ny, nz, lit, cosine, power, shine):
+    """n.l and the highlight of a wave: world points (x, y, z) with unit normals n, lit 1, or 0 in shadow.
 
-
-@device
-def phong(light, eye, x, y, z, nx, ny, nz, diffuse, specular, exponent, lit):
-    """What the light adds at a world point with the unit normal n: diffuse lit max(0, n.l), the highlight, and n.l.
-
-    The highlight is specular lit max(0, r.v)^exponent where n.l > 0, with r = 2 (n.l) n - l. lit: 1, or 0 in shadow.
+    The highlight is specular lit max(0, r.v)^exponent where n.l > 0, with r = 2 (n.l) n - l, into shine, which must be 0
+    before where specular is 0. The power is raised by repeated squaring, lowest bit first; `power` is room for it.
     """
-    lx, ly, lz = towards(light, x, y, z)
-    cosine = nx * lx + ny * ly + nz * lz
-    shine = 0.0
-    if specular > 0.0:
-        ex, ey, ez = towards(eye, x, y, z)
-        twice = 2.0 * cosine
-        reflected = (twice * nx - lx) * ex + (twice * ny - ly) * ey + (twice * nz - lz) * ez
-        gleam = power(reflected if reflected > 0.0 else 0.0, exponent)
-        shine = specular * lit * gleam if cosine > 0.0 else 0.0
-    bright = diffuse * lit * (cosine if cosine > 0.0 else 0.0)
-    return bright, shine, cosine
+    for lane in range(LANES):
+        lx, ly, lz = towards(light, x[lane], y[lane], z[lane])
+        cosine[lane] = nx[lane] * lx + ny[lane] * ly + nz[lane] * lz
+    if not specular > 0.0:
+        return
+    for lane in range(LANES):
+        lx, ly, lz = towards(light, x[lane], y[lane], z[lane])
+        ex, ey, ez = towards(eye, x[lane], y[lane], z[lane])
+        twice = 2.0 * cosine[lane]
+        reflected = (twice * nx[lane] - lx) * ex + (twice * ny[lane] - ly) * ey + (twice * nz[lane] - lz) * ez
+        power[lane] = reflected if reflected > 0.0 else 0.0
+        shine[lane] = 1.0
+    while exponent > 0:
+        for lane in range(LANES if exponent & 1 else 0):
+            shine[lane] *= power[lane]
+        for lane in range(LANES):
+            power[lane] *= power[lane]
+        exponent >>= 1
+    for lane in range(LANES):
+        shine[lane] = specular * lit[lane] * shine[lane] if cosine[lane] > 0.0 else 0.0
 
 
 @device

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import LANES, device, kernel, prange
-from ibr_ref.pipeline.lighting import lit_channel, phong
+from ibr_ref.pipeline.lighting import light_wave, lit_channel
 from ibr_ref.pipeline.waves import lanes
 from ibr_ref.splatting.buffers import Law, Lighting, Reference, Vertices, View
 from ibr_ref.splatting.normals import decoded
@@ -122,25 +122,48 @@ def place(reference: Reference, view: View, law: Law, first_row: int, last_row: 
 
 
 @device
+def _four(array):
+    """A homogeneous point or direction as a tuple."""
+    return array[0], array[1], array[2], array[3]
+
+
+@device
 def light_pixels(reference, normals, lighting, eye_array, pixels, colors):
     """Colours (n, 3) of the points of some pixels (n,) of a reference image: Phong with its colour and 8-bit normal."""
-    albedo, depth, perspective, width = reference.color, reference.depth, reference.perspective, reference.columns
-    k, m = reference.intrinsics, reference.world_from_view
+    albedo, depths, width = reference.color, reference.depth, np.float64(reference.columns)
+    k, m, perspective = reference.intrinsics, reference.world_from_view, reference.perspective
     m0, m1, m2 = _row(m, 0), _row(m, 1), _row(m, 2)
-    light = (lighting.light[0], lighting.light[1], lighting.light[2], lighting.light[3])
-    eye = (eye_array[0], eye_array[1], eye_array[2], eye_array[3])
+    f_x, skew, center_x, f_y, center_y = k[0, 0], k[0, 1], k[0, 2], k[1, 1], k[1, 2]
+    light, eye = _four(lighting.light), _four(eye_array)
     ambient, diffuse, specular = lighting.phong[0], lighting.phong[1], lighting.phong[2]
-    for i in range(len(pixels)):
-        pixel = pixels[i]
-        row = pixel // width
-        y_n = normalized_y(k[1, 1], k[1, 2], row)
-        x_n = normalized_x(k[0, 0], k[0, 1], k[0, 2], pixel - row * width, y_n)
-        p_x, p_y, p_z = view_point(perspective, x_n, y_n, depth[pixel])
-        x, y, z = transform(m0, p_x, p_y, p_z), transform(m1, p_x, p_y, p_z), transform(m2, p_x, p_y, p_z)
-        nx, ny, nz = decoded(normals[pixel, 0], normals[pixel, 1], normals[pixel, 2])
-        bright, shine, _ = phong(light, eye, x, y, z, nx, ny, nz, diffuse, specular, lighting.exponent, 1.0)
-        for channel in range(3):
-            colors[i, channel] = lit_channel(albedo[pixel, channel], ambient, bright, shine)
+    index, x, y, z, nx, ny, nz = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    lit, cosine, power, shine, channel = lanes(), lanes(), lanes(), lanes(), lanes()
+    for lane in range(LANES):
+        lit[lane], shine[lane], index[lane] = 1.0, 0.0, 0.0
+    for first in range(0, len(pixels), LANES):
+        count = min(LANES, len(pixels) - first)
+        for lane in range(count):  # the rest of the last wave is lit once more, and left
+            pixel = np.uint32(pixels[first + lane])
+            index[lane], z[lane] = np.float64(pixel), depths[pixel]
+            nx[lane], ny[lane], nz[lane] = normals[pixel, 0], normals[pixel, 1], normals[pixel, 2]
+        for lane in range(LANES):
+            row = np.floor(index[lane] / width)  # exact: integers below 2^31
+            y_n = normalized_y(f_y, center_y, row)
+            x_n = normalized_x(f_x, skew, center_x, index[lane] - row * width, y_n)
+            p_x, p_y, p_z = view_point(perspective, x_n, y_n, z[lane])
+            x[lane], y[lane] = transform(m0, p_x, p_y, p_z), transform(m1, p_x, p_y, p_z)
+            z[lane] = transform(m2, p_x, p_y, p_z)
+        for lane in range(LANES):
+            nx[lane], ny[lane], nz[lane] = decoded(nx[lane], ny[lane], nz[lane])
+        light_wave(light, eye, specular, lighting.exponent, x, y, z, nx, ny, nz, lit, cosine, power, shine)
+        for c in range(3):
+            for lane in range(count):
+                channel[lane] = albedo[np.uint32(pixels[first + lane]), c]
+            for lane in range(LANES):
+                bright = diffuse * (cosine[lane] if cosine[lane] > 0.0 else 0.0)
+                channel[lane] = lit_channel(channel[lane], ambient, bright, shine[lane])
+            for lane in range(count):
+                colors[first + lane, c] = channel[lane]
 
 
 @device

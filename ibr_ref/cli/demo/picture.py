@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 WIDTH, HEIGHT = 640, 480
+SIZE = {"width": WIDTH, "height": HEIGHT}
 
 
 @dataclass(frozen=True)

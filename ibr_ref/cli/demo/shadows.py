@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from ibr_ref.cli.demo.picture import HEIGHT, WIDTH, Picture, on_canvas
+from ibr_ref.cli.demo.picture import SIZE, Picture, on_canvas
 
 if TYPE_CHECKING:
     from ibr_ref.shadows import Maps, Params, Scene
@@ -37,7 +37,7 @@ def pictures() -> list[Picture]:
 def _stage(name: str, samples: int) -> tuple[Scene, Params, Maps]:
     from ibr_ref import models, shadows
 
-    scene = models.shadow_stage(getattr(models, name)(), offset=OFFSET, width=WIDTH, height=HEIGHT)
+    scene = models.shadow_stage(getattr(models, name)(), offset=OFFSET, **SIZE)
     params = shadows.Params(light_samples=samples)
     return scene, params, shadows.prepare(scene, params)
 
@@ -108,6 +108,8 @@ def _warped_and_rendered() -> Any:
     a, b = warped[window], rendered[window]
     greys = [1.0 - 0.85 * m[..., None].repeat(3, axis=2) for m in (a, b)]
     both = np.minimum(a, b)
-    difference = np.stack([1.0 - both - 0.9 * (b - both), 1.0 - np.maximum(a, b), 1.0 - both - 0.9 * (a - both)], axis=2)
+    difference = np.stack(
+        [1.0 - both - 0.9 * (b - both), 1.0 - np.maximum(a, b), 1.0 - both - 0.9 * (a - both)], axis=2
+    )
     gap = np.full((12, 400, 3), 0.9)
     return on_canvas(np.concatenate([greys[0], gap, greys[1], gap, np.clip(difference, 0.0, 1.0)]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ibr_ref.cli.demo.picture import HEIGHT, WIDTH, Picture, on_canvas
+from ibr_ref.cli.demo.picture import SIZE, Picture, on_canvas
 
 if TYPE_CHECKING:
     from ibr_ref.scene import Camera
@@ -48,7 +48,7 @@ def _picture(name: str, caption: str, scene: Scene, params: Params, settings: st
 def _camera(**view: Any) -> Camera:
     from ibr_ref.scene import Camera
 
-    return Camera.look_at(near=0.05, far=20.0, width=WIDTH, height=HEIGHT, **view)
+    return Camera.look_at(near=0.05, far=20.0, **SIZE, **view)
 
 
 def _figures_1_and_5() -> list[Picture]:
