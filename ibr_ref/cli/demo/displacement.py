@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ibr_ref.cli.demo.picture import Picture
+from ibr_ref.cli.demo.picture import SIZE, Picture
 
 if TYPE_CHECKING:
     from ibr_ref.displacement import Params, Scene
