@@ -215,9 +215,7 @@ class Port:
         surface = ctx.vertex_array(self._programs.get("surface", "surface"), layout)
         flags = _flags(params, stages)
         project = ctx.vertex_array(self._programs.get("screen", "project", *flags), [])
-        coordinates = (
-            ctx.vertex_array(self._programs.get("screen", "project", "COORD", *flags), []) if stages else None
-        )
+        coordinates = ctx.vertex_array(self._programs.get("screen", "project", "COORD", *flags), []) if stages else None
         resolve = ctx.vertex_array(self._programs.get("screen", "resolve"), [])
         vaos = [vao for vao in (surface, project, coordinates, resolve) if vao is not None]
         source: WarpedMaps | CasterMaps = (
