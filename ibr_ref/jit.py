@@ -24,6 +24,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+# GNU OpenMP, which Numba's threads may be, lets a thread that waits spin for milliseconds. Where others want the cores
+# too, it keeps them from the very thread that it waits for. Read when that library is loaded: before any kernel runs.
+os.environ.setdefault("GOMP_SPINCOUNT", "2000")
+
 import llvmlite
 import numba
 from numba import prange

@@ -1,11 +1,16 @@
-"""A large frame stays within its memory."""
+"""Large frames stay within their memory."""
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 
 import pytest
+
+GIB = 2**30
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="getrusage, which tells the peak, is not on Windows")
 
 SCRIPT = """
 import resource, sys
@@ -20,9 +25,31 @@ print(peak if sys.platform == "darwin" else 1024 * peak)
 """
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="getrusage, which tells the peak, is not on Windows")
+def printed(*arguments: str) -> str:
+    """What a process of its own prints."""
+    result = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
+    return result.stdout
+
+
 @pytest.mark.parametrize("kept", ["picture", "stages"])
 def test_a_frame_of_4096_x_4096_stays_under_4_gib(kept: str) -> None:
-    result = subprocess.run([sys.executable, "-c", SCRIPT, kept], capture_output=True, text=True, check=False)
-    assert result.returncode == 0, result.stderr
-    assert int(result.stdout) < 4 * 2**30
+    assert int(printed("-c", SCRIPT, kept)) < 4 * GIB
+
+
+def test_50_million_points_stay_under_8_gib() -> None:
+    """64 references of 1024 x 768, their own 1.6 GiB included; and a frame takes 4 bytes a point, its pixel's number, and
+    no more that grows with them.
+    """
+    found = json.loads(printed("-m", "tests.splatting.many_points", "64", "picture"))
+    assert found["points"] > 50e6
+    assert found["peak"] < 8 * GIB
+    assert found["peak"] - found["made"] < 4 * found["points"] + GIB // 8
+
+
+def test_50_million_points_with_all_stages_stay_under_8_gib() -> None:
+    """An eighth of them here, in an eighth of the memory. All 64: `python -m tests.splatting.many_points 64 stages`, which
+    has its peak at 6.9 GiB.
+    """
+    found = json.loads(printed("-m", "tests.splatting.many_points", "8", "stages"))
+    assert found["peak"] - found["imported"] < 1 * GIB

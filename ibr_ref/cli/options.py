@@ -29,6 +29,36 @@ def pair(text: str) -> tuple[float, float]:
     return w, h
 
 
+def law(text: str) -> tuple[float, float, float, float]:
+    """A,B,C,D of a splat law."""
+    a, b, c, d = _numbers(text, 4, "1,0,0.002,0.7")
+    return a, b, c, d
+
+
+def numbers(text: str) -> list[int]:
+    """I,J,..: numbers of cameras."""
+    parts = text.split(",")
+    if not all(part.isascii() and part.isdigit() for part in parts):
+        raise typer.BadParameter(f"found {text!r}, allowed: numbers of cameras, such as 0 or 0,1")
+    return [int(part) for part in parts]
+
+
+def view(text: str) -> tuple[int, int | None, float]:
+    """I, I:J or I:J:F: one camera, or two and how far it is from the first to the second."""
+    first, *rest = text.split(":")
+    fraction = rest[1] if len(rest) == 2 else "0.5"
+    try:
+        if len(rest) > 2 or not all(part.isascii() and part.isdigit() for part in (first, *rest[:1])):
+            raise ValueError
+        where = float(fraction)
+        if not 0.0 <= where <= 1.0:
+            raise ValueError
+    except ValueError:
+        allowed = "a camera, such as 1, or two and a fraction in [0, 1], such as 0:1 or 0:1:0.25"
+        raise typer.BadParameter(f"found {text!r}, allowed: {allowed}") from None
+    return int(first), int(rest[0]) if rest else None, where
+
+
 def size(text: str) -> tuple[int, int]:
     """WIDTHxHEIGHT in pixels."""
     parts = text.lower().split("x")

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import LANES, device
+from ibr_ref.pipeline.waves import load
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -131,25 +132,6 @@ class Shades(NamedTuple):
 
 
 @device
-def lanes():
-    """An array for the lanes of a wave. Allocated where it is used: LLVM then knows that a store cannot change a texture."""
-    return np.empty(LANES)
-
-
-@device
-def index_lanes():
-    """The same for indices."""
-    return np.empty(LANES, np.int32)
-
-
-@device
-def load(array, first, wave):
-    """Copy a wave's elements of an array to its lanes."""
-    for lane in range(LANES):
-        wave[lane] = array[first + lane]
-
-
-@device
 def load_rays(rays, first, u, v, h, du, dv, dh):
     """Copy a wave's rays to its lanes."""
     load(rays.u, first, u)
@@ -161,23 +143,8 @@ def load_rays(rays, first, u, v, h, du, dv, dh):
 
 
 @device
-def store(wave, array, first):
-    """Copy the lanes of a wave to their elements of an array."""
-    for lane in range(LANES):
-        array[first + lane] = wave[lane]
-
-
-@device
-def store_indices(wave, array, first):
-    """The same for indices that the wave holds as floats."""
-    for lane in range(LANES):
-        array[first + lane] = np.int32(wave[lane])
-
-
-@device
-def over_polygon(fragments, i):
-    """Whether the fragment's point lies on the polygon itself: such a ray always hits something."""
-    u, v, h = fragments.patch[0, i], fragments.patch[1, i], fragments.patch[2, i]
+def over_polygon(u, v, h):
+    """Whether a fragment's point lies on the polygon itself: such a ray always hits something."""
     return (h == 0.0) & (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0)
 
 

@@ -126,6 +126,6 @@ def exact_search(repeat, fragments, rays, count, texels, columns, rows, highest,
             before = t - 1.0 / steps
             if before >= t0:
                 hits.height_before[i] = fetch(texels, columns, rows, repeat, u + du * before, v + dv * before)
-        elif over_polygon(fragments, i):
+        elif over_polygon(fragments.patch[0, i], fragments.patch[1, i], fragments.patch[2, i]):
             hits.hit_index[i] = end
             hits.u[i], hits.v[i], hits.h[i] = u + du, v + dv, 0.0

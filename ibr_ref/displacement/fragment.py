@@ -19,6 +19,7 @@ from ibr_ref.displacement.maxima import Maxima
 from ibr_ref.displacement.rays import paper_rays, volume_rays
 from ibr_ref.displacement.relief import relief_search, texture_search
 from ibr_ref.displacement.resolve import (
+    clear,
     depth_test,
     noted_depth_test,
     project_hits,
@@ -178,9 +179,10 @@ def draw(
     patch_id,
     width,
     height,
+    background,
     target,
 ):
-    """Draw one polygon into the target, over what has been drawn before it.
+    """Draw one polygon into the target: patch_id 0 clears it first, band by band; others come over what is there.
 
     repeat: None (clamp) or True, the wrap mode of its maps; it is a type to the compiler. faces: the face number of
     each quad. heights, colors, normals, facade: `Map`s (one by one: Numba's parallel loops take no nested tuples). The
@@ -195,4 +197,6 @@ def draw(
         first_row = (turn * stride) % bands * band_rows
         last_row = min(height, first_row + band_rows)
         maps = Maps(heights, colors, normals, facade, maxima)
+        if patch_id == 0:
+            clear(target, background, first_row * width, last_row * width)
         _draw_band(repeat, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target)

@@ -10,61 +10,74 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import lanes, load_rays, over_polygon, store, store_indices
-from ibr_ref.displacement.maxima import highest
+from ibr_ref.displacement.buffers import load_rays, over_polygon
+from ibr_ref.displacement.maxima import highest, level_for
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch, lerp
+from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, smallest, store, store_indices
 
-_LEAP = 16  # most steps that one look at the maxima may prove empty
 _VOLUME_SLACK = 1e-9  # rounding of h = B_h + (C_h - B_h) t; the paper's h = 1 - t is the same number in all lanes
+_BORDER_SLACK = 1e-6
+
+STRETCH = 16
+"""Steps whose clearance is computed at once: steps take the place of lanes there."""
 
 
 @device
 def _bounds(values, steps, stop):
-    """Smallest and largest value of a wave's open lanes at t = 0, and the same at t = 1: low0, high0, low1, high1."""
-    low0 = low1 = np.inf
-    high0 = high1 = -np.inf
+    """Smallest and largest value of a wave's open lanes at t = 0, and the same at t = 1: low0, low1, high0, high1."""
+    low0, low1, high0, high1 = lanes(), lanes(), lanes(), lanes()
     for lane in range(LANES):
-        start = values[lane] if stop[lane] < 0 else np.nan  # a NaN passes no comparison
-        end = start + steps[lane]
-        low0 = start if start < low0 else low0
-        high0 = start if start > high0 else high0
-        low1 = end if end < low1 else low1
-        high1 = end if end > high1 else high1
-    return low0, high0, low1, high1
-
-
-@device
-def _between(bounds, t0, t1):
-    """Bounds of a wave's values for t in [t0, t1]: at each t they lie between the mixes of the ends' bounds."""
-    low = min(lerp(bounds[0], bounds[2], t0), lerp(bounds[0], bounds[2], t1))
-    return low, max(lerp(bounds[1], bounds[3], t0), lerp(bounds[1], bounds[3], t1))
-
-
-@device
-def clearance(repeat, maxima, bounded, bounds_u, bounds_v, bounds_h, t0, t1):
-    """How far the wave's rays stay above all heights for t in [t0, t1], at least; infinite outside the domain."""
-    u_low, u_high = _between(bounds_u, t0, t1)
-    v_low, v_high = _between(bounds_v, t0, t1)
-    if bounded and (u_high < -1e-6 or u_low > 1.0 + 1e-6 or v_high < -1e-6 or v_low > 1.0 + 1e-6):
-        return np.inf
-    h_low, _ = _between(bounds_h, t0, t1)
-    if repeat is None:
-        return h_low - highest(maxima, u_low, u_high, v_low, v_high)
-    return h_low - maxima.everywhere
+        start, end, is_open = values[lane], values[lane] + steps[lane], stop[lane] < 0.0
+        low0[lane] = start if is_open else np.inf
+        low1[lane] = end if is_open else np.inf
+        high0[lane] = start if is_open else -np.inf
+        high1[lane] = end if is_open else -np.inf
+    return smallest(low0), smallest(low1), largest(high0), largest(high1)
 
 
 @device
 def wave_bounds(u, v, h, du, dv, dh, stop, volume):
     """Bounds of u, v and h over the lanes that have not stopped, stop < 0 (paper: h is 1 - t in every lane)."""
     if volume:
-        low0, high0, low1, high1 = _bounds(h, dh, stop)
+        low0, low1, high0, high1 = _bounds(h, dh, stop)
         return (
             _bounds(u, du, stop),
             _bounds(v, dv, stop),
-            (low0 - _VOLUME_SLACK, high0, low1 - _VOLUME_SLACK, high1),
+            (low0 - _VOLUME_SLACK, low1 - _VOLUME_SLACK, high0, high1),
         )
-    return _bounds(u, du, stop), _bounds(v, dv, stop), (1.0, 1.0, 0.0, 0.0)
+    return _bounds(u, du, stop), _bounds(v, dv, stop), (1.0, 0.0, 1.0, 0.0)
+
+
+@device
+def clearances(repeat, maxima, settings, bounds, step, clear):
+    """How far the wave's rays stay above all heights at each of STRETCH steps, at least; infinite outside the domain.
+
+    At each t the lanes' values lie between the mixes of their bounds at t = 0 and t = 1. A NaN or infinite bound proves
+    nothing.
+    """
+    total = np.float64(settings.linear_steps << settings.binary_steps)
+    stride = np.float64(1 << settings.binary_steps)
+    (u_low0, u_low1, u_high0, u_high1), (v_low0, v_low1, v_high0, v_high1), (h_low0, h_low1, _, _) = bounds
+    bounded = settings.bounded
+    start, last = step * stride / total, (step + STRETCH - 1) * stride / total
+    above = lanes()
+    grid = level_for(
+        maxima,
+        max(lerp(u_high0 - u_low0, u_high1 - u_low1, start), lerp(u_high0 - u_low0, u_high1 - u_low1, last)),
+        max(lerp(v_high0 - v_low0, v_high1 - v_low1, start), lerp(v_high0 - v_low0, v_high1 - v_low1, last)),
+    )
+    values, everywhere = maxima.values, maxima.everywhere
+    for i in range(STRETCH):
+        t = np.float64(step + i) * stride / total
+        u_low, u_high = lerp(u_low0, u_low1, t), lerp(u_high0, u_high1, t)
+        v_low, v_high = lerp(v_low0, v_low1, t), lerp(v_high0, v_high1, t)
+        heights = highest(values, everywhere, grid, u_low, u_high, v_low, v_high) if repeat is None else everywhere
+        beside = (u_high < -_BORDER_SLACK) | (u_low > 1.0 + _BORDER_SLACK)
+        beside |= (v_high < -_BORDER_SLACK) | (v_low > 1.0 + _BORDER_SLACK)
+        above[i] = np.inf if beside & bounded else lerp(h_low0, h_low1, t) - heights
+    for i in range(STRETCH):
+        clear[i] = above[i]
 
 
 @device
@@ -89,41 +102,40 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
     stride = np.float64(1 << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
     u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
-    p_u, p_v, sample, stop = lanes(), lanes(), lanes(), lanes()
+    p_u, p_v, sample, stop, clear = lanes(), lanes(), lanes(), lanes(), lanes()
     first_step = _first_step(maxima, settings)
     for first in range(0, count, LANES):
         load_rays(rays, first, u, v, h, du, dv, dh)
         for lane in range(LANES):
             stop[lane] = -1.0
-        bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, stop, settings.volume)
-        step, leap, stopped = first_step, _LEAP, 0.0
+        bounds = wave_bounds(u, v, h, du, dv, dh, stop, settings.volume)
+        step, known, stopped = first_step, first_step, 0  # clear[i] is known for the step known - STRETCH + i
         while step <= steps:
-            leap = min(leap, steps - step + 1)
-            t0, t1 = step * stride / total, (step + leap - 1) * stride / total
-            if clearance(repeat, maxima, settings.bounded, bounds_u, bounds_v, bounds_h, t0, t1) >= 0.0:
-                step += leap
-                leap = min(2 * leap, _LEAP)
+            if step == known:
+                clearances(repeat, maxima, settings, bounds, step, clear)
+                known = step + STRETCH
+            if clear[step - known + STRETCH] >= 0.0:
+                step += 1
                 continue
-            if leap > 1:
-                leap //= 2
-                continue
+            t, here = step * stride / total, np.float64(step)
             for lane in range(LANES):
-                p_u[lane] = u[lane] + du[lane] * t0
-                p_v[lane] = v[lane] + dv[lane] * t0
+                p_u[lane] = u[lane] + du[lane] * t
+                p_v[lane] = v[lane] + dv[lane] * t
             for lane in range(LANES):
                 sample[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
-            before, stopped, here = stopped, 0.0, np.float64(step)
+            before, stopped = stopped, 0
             for lane in range(LANES):
                 inside = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
-                below = h[lane] + dh[lane] * t0 < sample[lane]
+                below = h[lane] + dh[lane] * t < sample[lane]
                 stop[lane] = here if below & inside & (stop[lane] < 0.0) else stop[lane]
             for lane in range(LANES):
-                stopped += 1.0 if stop[lane] >= 0.0 else 0.0
+                stopped += 1 if stop[lane] >= 0.0 else 0
             if stopped == LANES:
                 break
-            if stopped > before:  # the lanes that are left may have a clear way
-                bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, stop, settings.volume)
             step += 1
+            if stopped > before:  # the lanes that are left may have a clear way
+                bounds = wave_bounds(u, v, h, du, dv, dh, stop, settings.volume)
+                known = step
         store_indices(stop, linear_index, first)
 
 
@@ -140,16 +152,14 @@ def binary_search(repeat, rays, count, texels, columns, rows, settings, linear_i
     p_u, p_v, p_h, sample = lanes(), lanes(), lanes(), lanes()
     outside, inside, stop = lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
-        searching = 0.0
+        load_indices(linear_index, first, stop)
         for lane in range(LANES):
-            stop[lane] = np.float64(linear_index[first + lane])
             inside[lane] = stop[lane] * stride if stop[lane] >= 0.0 else -1.0
             outside[lane] = inside[lane] - stride if stop[lane] > 0.0 else inside[lane]
-        for lane in range(LANES):
-            searching += 1.0 if stop[lane] > 0.0 else 0.0
-        if searching > 0.0:
+        searching = largest(stop) > 0.0
+        if searching:
             load_rays(rays, first, u, v, h, du, dv, dh)
-        for _ in range(settings.binary_steps if searching > 0.0 else 0):
+        for _ in range(settings.binary_steps if searching else 0):
             for lane in range(LANES):
                 t = (outside[lane] + inside[lane]) * 0.5 / total
                 p_u[lane] = u[lane] + du[lane] * t
@@ -173,20 +183,20 @@ def heights_before(repeat, rays, count, texels, columns, rows, settings, linear_
     stride = np.float64(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
+    u, v, du, dv = lanes(), lanes(), lanes(), lanes()
     p_u, p_v, stop, before = lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
-        searched = 0.0
-        for lane in range(LANES):
-            stop[lane] = np.float64(linear_index[first + lane])
-        for lane in range(LANES):
-            searched += 1.0 if stop[lane] > 0.0 else 0.0
-        if searched == 0.0:  # nothing to read: the heights stay 0
+        load_indices(linear_index, first, stop)
+        if largest(stop) <= 0.0:  # nothing to read: the heights stay 0
             continue
+        load(rays.u, first, u)
+        load(rays.v, first, v)
+        load(rays.du, first, du)
+        load(rays.dv, first, dv)
         for lane in range(LANES):
-            i = first + lane
             t = (stop[lane] - 1.0) * stride / total
-            p_u[lane] = rays.u[i] + rays.du[i] * t
-            p_v[lane] = rays.v[i] + rays.dv[i] * t
+            p_u[lane] = u[lane] + du[lane] * t
+            p_v[lane] = v[lane] + dv[lane] * t
         for lane in range(LANES):
             before[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
         for lane in range(LANES):
@@ -202,30 +212,33 @@ def place_hits(fragments, rays, count, settings, hits):
     No stop, or a hit at k = K: a fragment over the polygon hits the polygon itself, any other is discarded.
     """
     end = np.float64(settings.linear_steps << settings.binary_steps)
-    u, v, h, t = lanes(), lanes(), lanes(), lanes()
-    index, stopped = lanes(), lanes()
+    u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    c_u, c_v, c_h = lanes(), lanes(), lanes()
+    index, linear, before = lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
-        for lane in range(LANES):
-            index[lane] = np.float64(hits.hit_index[first + lane])
+        load_rays(rays, first, u, v, h, du, dv, dh)
+        load(fragments.patch[0], first, c_u)
+        load(fragments.patch[1], first, c_v)
+        load(fragments.patch[2], first, c_h)
+        load_indices(hits.hit_index, first, index)
+        load_indices(hits.linear_index, first, linear)
+        load(hits.height_before, first, before)
         for lane in range(LANES):
             hit = (index[lane] >= 0.0) & (index[lane] < end)
-            stopped[lane] = 1.0 if hit else 0.0
-            t[lane] = index[lane] / end if hit else 1.0
-        for lane in range(LANES):
-            i = first + lane
-            u[lane] = rays.u[i] + rays.du[i] * t[lane]
-            v[lane] = rays.v[i] + rays.dv[i] * t[lane]
-            h[lane] = rays.h[i] + rays.dh[i] * t[lane] if stopped[lane] > 0.0 else 0.0
+            ground = over_polygon(c_u[lane], c_v[lane], c_h[lane]) & (h[lane] <= 1.0)
+            t = index[lane] / end if hit else 1.0
+            u[lane] = u[lane] + du[lane] * t
+            v[lane] = v[lane] + dv[lane] * t
+            h[lane] = h[lane] + dh[lane] * t if hit else 0.0
+            index[lane] = index[lane] if hit else (end if ground else -1.0)
+            linear[lane] = linear[lane] if hit else -1.0
+            before[lane] = before[lane] if hit else 0.0
         store(u, hits.u, first)
         store(v, hits.v, first)
         store(h, hits.h, first)
-        for lane in range(LANES):
-            i = first + lane
-            if stopped[lane] == 0.0:
-                ground = over_polygon(fragments, i) & (rays.h[i] <= 1.0)
-                hits.hit_index[i] = np.int32(end) if ground else np.int32(-1)
-                hits.linear_index[i] = -1
-                hits.height_before[i] = 0.0
+        store_indices(index, hits.hit_index, first)
+        store_indices(linear, hits.linear_index, first)
+        store(before, hits.height_before, first)
 
 
 @device

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import lanes, load, load_rays, store
-from ibr_ref.displacement.march import clearance, wave_bounds
+from ibr_ref.displacement.buffers import load_rays
+from ibr_ref.displacement.march import STRETCH, clearances, wave_bounds
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch
+from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, store
 
 
 @device
@@ -23,22 +24,25 @@ def _distance_to_border(u, v):
 @device
 def _last_steps(rays, linear_index, first, steps, last):
     """The last step that each lane of a wave was tested at, -1 where the ray does not go down; the largest of them."""
-    largest = -1
+    stop, h = lanes(), lanes()
+    load_indices(linear_index, first, stop)
+    load(rays.h, first, h)
     for lane in range(LANES):
-        stop = linear_index[first + lane]
-        step = (stop if stop >= 0 else steps) if rays.h[first + lane] <= 1.0 else -1
-        last[lane] = np.float64(step)
-        largest = max(largest, step)
-    return largest
+        stop[lane] = stop[lane] if stop[lane] >= 0.0 else np.float64(steps)
+        stop[lane] = stop[lane] if h[lane] <= 1.0 else -1.0
+    store(stop, last, 0)
+    return np.int64(largest(stop))
 
 
 @device
 def _farthest(closest, compared):
     """The largest margin of a wave so far: what stays farther away than this changes none."""
-    farthest = 0.0
+    near, last = lanes(), lanes()
+    load(closest, 0, near)
+    load(compared, 0, last)
     for lane in range(LANES):
-        farthest = closest[lane] if (compared[lane] >= 0.0) & (closest[lane] > farthest) else farthest
-    return farthest
+        near[lane] = near[lane] if last[lane] >= 0.0 else 0.0
+    return largest(near)
 
 
 @device
@@ -50,7 +54,7 @@ def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings,
     low, high = (0.0, 1.0) if settings.bounded else (-np.inf, np.inf)
     u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
     p_u, p_v, sample, closest = lanes(), lanes(), lanes(), lanes()
-    compared, never = lanes(), lanes()
+    compared, never, clear = lanes(), lanes(), lanes()
     for lane in range(LANES):
         never[lane] = -1.0
     for first in range(0, count, LANES):
@@ -60,11 +64,15 @@ def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings,
         if not settings.volume:
             last_step = min(last_step, steps - 1)  # the last comparison is at h = 0
         farthest = _farthest(closest, compared)
-        bounds_u, bounds_v, bounds_h = wave_bounds(u, v, h, du, dv, dh, never, settings.volume)
+        bounds = wave_bounds(u, v, h, du, dv, dh, never, settings.volume)
+        known = last_step + 1  # clear[i] is known for the step known + i
         for step in range(last_step, -1, -1):
-            t, here = step * stride / total, np.float64(step)
-            if clearance(repeat, maxima, settings.bounded, bounds_u, bounds_v, bounds_h, t, t) >= farthest:
+            if step < known:
+                known = step - STRETCH + 1
+                clearances(repeat, maxima, settings, bounds, known, clear)
+            if clear[step - known] >= farthest:
                 continue
+            t, here = step * stride / total, np.float64(step)
             for lane in range(LANES):
                 p_u[lane] = u[lane] + du[lane] * t
                 p_v[lane] = v[lane] + dv[lane] * t
@@ -91,16 +99,13 @@ def binary_margins(repeat, rays, count, texels, columns, rows, settings, linear_
     outside, inside, stop, index = lanes(), lanes(), lanes(), lanes()
     closest, nearest = lanes(), lanes()
     for first in range(0, count, LANES):
-        searching = 0.0
+        load_indices(linear_index, first, stop)
+        if largest(stop) <= 0.0:
+            continue
+        load_indices(hit_index, first, index)
         for lane in range(LANES):
-            stop[lane] = np.float64(linear_index[first + lane])
-            index[lane] = np.float64(hit_index[first + lane])
             inside[lane] = stop[lane] * stride
             outside[lane] = inside[lane] - stride
-        for lane in range(LANES):
-            searching += 1.0 if stop[lane] > 0.0 else 0.0
-        if searching == 0.0:
-            continue
         load_rays(rays, first, u, v, h, du, dv, dh)
         load(margin, first, closest)
         load(border, first, nearest)

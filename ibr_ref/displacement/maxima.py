@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange, routine
+from ibr_ref.pipeline.sampling import clamped
 
 CELL = 8
 
@@ -89,26 +90,35 @@ def build(texels: NDArray[np.float64], rows: int, columns: int) -> Maxima:
 
 
 @device
-def _cell_range(low, high, cells, count):
-    """Level-0 cells that texture coordinates in [low, high] can fall into, clamped to the map."""
-    first = np.floor(low * cells - _SLACK)
-    last = np.floor(high * cells + _SLACK)
-    first = np.int64(min(max(first, 0.0), count - 1.0))
-    return first, np.int64(min(max(last, 0.0), count - 1.0))
+def level_for(maxima, width, height):
+    """The finest level at which a range of (u, v) so wide and high falls into two cells each way.
+
+    As a grid: offset in the values, cells in a row, cells in a unit of u and v, the largest indices of cells.
+    """
+    cells = max(width * maxima.cells[0], height * maxima.cells[1]) + 4.0 * _SLACK
+    level, scale = 0, 1.0
+    while not cells * scale <= 1.0 and level < len(maxima.offsets) - 1:
+        level += 1
+        scale *= 0.5
+    columns, rows = np.float64(maxima.columns[level]), np.float64(maxima.rows[level])
+    offset = np.float64(maxima.offsets[level])
+    return offset, columns, maxima.cells[0] * scale, maxima.cells[1] * scale, columns - 1.0, rows - 1.0, _SLACK * scale
 
 
 @device
-def highest(maxima, u_low, u_high, v_low, v_high):
+def highest(values, everywhere, grid, u_low, u_high, v_low, v_high):
     """An upper bound of every fetch with u in [u_low, u_high] and v in [v_low, v_high] (clamped), from four cells."""
-    if not (max(abs(u_low), abs(u_high)) < _FAR and max(abs(v_low), abs(v_high)) < _FAR):
-        return maxima.everywhere
-    first_x, last_x = _cell_range(u_low, u_high, maxima.cells[0], maxima.columns[0])
-    first_y, last_y = _cell_range(v_low, v_high, maxima.cells[1], maxima.rows[0])
-    level = 0
-    while last_x - first_x > 1 or last_y - first_y > 1:
-        first_x, last_x, first_y, last_y = first_x >> 1, last_x >> 1, first_y >> 1, last_y >> 1
-        level += 1
-    columns, offset = maxima.columns[level], maxima.offsets[level]
-    upper = max(maxima.values[offset + first_y * columns + first_x], maxima.values[offset + first_y * columns + last_x])
-    lower = max(maxima.values[offset + last_y * columns + first_x], maxima.values[offset + last_y * columns + last_x])
-    return max(upper, lower)
+    offset, columns, across, along, last_column, last_row, slack = grid
+    left = clamped(np.floor(u_low * across - slack), 0.0, last_column)
+    right = clamped(np.floor(u_high * across + slack), 0.0, last_column)
+    top = clamped(np.floor(v_low * along - slack), 0.0, last_row) * columns + offset
+    bottom = clamped(np.floor(v_high * along + slack), 0.0, last_row) * columns + offset
+    upper = max(values[_index(top + left)], values[_index(top + right)])
+    lower = max(values[_index(bottom + left)], values[_index(bottom + right)])
+    near = (abs(u_low) < _FAR) & (abs(u_high) < _FAR) & (abs(v_low) < _FAR) & (abs(v_high) < _FAR)
+    return max(upper, lower) if near else everywhere
+
+
+@device
+def _index(cell):
+    return np.uint32(np.int32(cell))

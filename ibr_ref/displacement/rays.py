@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import lanes, padded, store
+from ibr_ref.displacement.buffers import padded
 from ibr_ref.jit import LANES, device
+from ibr_ref.pipeline.waves import lanes, load, store
 
 
 @device
@@ -68,10 +69,12 @@ def paper_rays(fragments, count, eye, rays):
     eye_u, eye_v, eye_h, eye_w = eye[0], eye[1], eye[2], eye[3]
     u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
+        load(fragments.patch[0], first, u)
+        load(fragments.patch[1], first, v)
+        load(fragments.patch[2], first, h)
         for lane in range(LANES):
-            i = first + lane
             u[lane], v[lane], h[lane], du[lane], dv[lane], dh[lane] = _paper_ray(
-                fragments.patch[0, i], fragments.patch[1, i], fragments.patch[2, i], eye_u, eye_v, eye_h, eye_w
+                u[lane], v[lane], h[lane], eye_u, eye_v, eye_h, eye_w
             )
         store(u, rays.u, first)
         store(v, rays.v, first)

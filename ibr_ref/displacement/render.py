@@ -13,7 +13,7 @@ from ibr_ref.displacement.fragment import Map, Maps, draw
 from ibr_ref.displacement.inputs import Params, Scene
 from ibr_ref.displacement.maxima import Maxima, build
 from ibr_ref.displacement.patch_space import uniforms
-from ibr_ref.displacement.resolve import Target, clear, resolve_margins, target_for
+from ibr_ref.displacement.resolve import Target, resolve_margins, target_for
 from ibr_ref.displacement.vertex import Faces, vertex_stage
 from ibr_ref.io import Frame
 from ibr_ref.pipeline.clip import clip_triangles
@@ -35,7 +35,7 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
         inputs.check_eye(params, polygon_constants.eye)
     faces = [vertex_stage(c, params.drawn_faces, params.interval) for c in constants]
     target = target_for(camera.width * camera.height, stages)
-    clear(target, np.array(scene.background, np.float64))
+    background = np.array(scene.background, np.float64)
     for patch_id, (polygon, quads) in enumerate(zip(scene.polygons, faces, strict=True)):
         clipped = clip_triangles(quads.clip, quads.patch, quads.triangles, camera.width, camera.height)
         triangles = set_up(clipped, camera.width, camera.height)
@@ -43,7 +43,7 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
         settings = _settings(params, polygon, stages)
         draw(
             repeat, triangles, quads.numbers, constants[patch_id], settings, *_maps(polygon), patch_id,
-            camera.width, camera.height, target,
+            camera.width, camera.height, background, target,
         )  # fmt: skip
     size = (camera.height, camera.width)
     return Frame(
@@ -101,8 +101,7 @@ def _maps(polygon: BasePolygon) -> Maps:
 
 def _stages(faces: list[Faces], target: Target, size: tuple[int, int]) -> dict[str, NDArray[np.generic]]:
     """The stage arrays by their names in the contract."""
-    margin = np.empty(len(target.depth))
-    resolve_margins(target, margin)
+    resolve_margins(target, target.second)
     stages: dict[str, NDArray[np.generic]] = {
         "vertex.clip": np.concatenate([f.clip for f in faces]),
         "vertex.patch": np.concatenate([f.patch for f in faces]),
@@ -125,5 +124,5 @@ def _stages(faces: list[Faces], target: Target, size: tuple[int, int]) -> dict[s
         for name in names:
             array = getattr(target, name)
             stages[f"{group}.{name}"] = array.reshape(*size, *array.shape[1:])
-    stages["resolve.margin"] = margin.reshape(size)
+    stages["resolve.margin"] = target.second.reshape(size)
     return stages

@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.displacement.buffers import index_lanes, lanes, store
 from ibr_ref.jit import LANES, device, kernel, prange
+from ibr_ref.pipeline.memory import Layout, arrays
 from ibr_ref.pipeline.merge import passes
+from ibr_ref.pipeline.waves import lanes, load, load_indices, store, store_indices
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -42,64 +43,64 @@ class Target(NamedTuple):
     """Window depth of the nearest kept fragment behind the one that is shown."""
 
 
+_TRIPLES = ("color", "patch", "hit", "albedo", "normal")
+_INTS = ("face", "patch_id", "linear_index", "hit_index")
+_BOOLS = ("steep", "lit")
+
+
 def target_for(pixels: int, keep: bool) -> Target:
     """Arrays for a picture of so many pixels, not yet cleared."""
-    kept = pixels if keep else 0
 
-    def floats(*channels: int) -> Floats:
-        return np.empty((kept, *channels))
+    def layouts(names: tuple[str, ...], count: int) -> list[Layout]:
+        return [
+            (
+                np.int32 if name in _INTS else np.bool_ if name in _BOOLS else np.float64,
+                (count, 3) if name in _TRIPLES else (count,),
+            )
+            for name in names
+        ]
 
-    def ints() -> Ints:
-        return np.empty(kept, np.int32)
-
-    return Target(
-        color=np.empty((pixels, 3)),
-        depth=np.empty(pixels),
-        face=ints(),
-        patch_id=ints(),
-        patch=floats(3),
-        linear_index=ints(),
-        hit_index=ints(),
-        hit=floats(3),
-        height_before=floats(),
-        steep=np.empty(kept, np.bool_),
-        margin=floats(),
-        domain_margin=floats(),
-        steep_margin=floats(),
-        albedo=floats(3),
-        normal=floats(3),
-        lit=np.empty(kept, np.bool_),
-        lit_margin=floats(),
-        axis_margin=floats(),
-        facing_margin=floats(),
-        second=floats(),
-    )
+    picture, stages = Target._fields[:2], Target._fields[2:]
+    # Apart: whoever keeps the picture alone does not keep the memory of the stages.
+    return Target(*arrays(layouts(picture, pixels)), *arrays(layouts(stages, pixels if keep else 0)))
 
 
 @device
-def _clear_part(target, background, first, last):
+def _fill(array, first, last, value):
     for i in range(first, last):
-        target.depth[i] = 1.0
-        for channel in range(3):
-            target.color[i, channel] = background[channel]
-    for i in range(first, last if len(target.face) > 0 else first):
-        target.face[i] = target.patch_id[i] = target.linear_index[i] = target.hit_index[i] = -1
-        target.steep[i] = target.lit[i] = False
-        target.height_before[i] = target.margin[i] = target.domain_margin[i] = target.steep_margin[i] = np.nan
-        target.lit_margin[i] = target.axis_margin[i] = target.facing_margin[i] = np.nan
-        target.second[i] = np.inf
-        for channel in range(3):
-            target.patch[i, channel] = target.hit[i, channel] = np.nan
-            target.albedo[i, channel] = target.normal[i, channel] = np.nan
+        array[i] = value
 
 
-@kernel
-def clear(target, background):
-    """Nothing anywhere: the background at depth 1; -1, NaN and False in the stages."""
-    pixels = len(target.depth)
-    chunk = 4096
-    for part in prange((pixels + chunk - 1) // chunk):
-        _clear_part(target, background, part * chunk, min(pixels, (part + 1) * chunk))
+@device
+def _fill_triples(array, first, last, x, y, z):
+    for i in range(first, last):
+        array[i, 0], array[i, 1], array[i, 2] = x, y, z
+
+
+@device
+def clear(target, background, first, last):
+    """Nothing at the pixels [first, last): the background at depth 1; -1, NaN and False in the stages."""
+    _fill(target.depth, first, last, 1.0)
+    _fill_triples(target.color, first, last, background[0], background[1], background[2])
+    if len(target.face) == 0:
+        return
+    for indices in (target.face, target.patch_id, target.linear_index, target.hit_index):
+        _fill(indices, first, last, -1)
+    for truths in (target.steep, target.lit):
+        _fill(truths, first, last, False)
+    for numbers in (
+        target.height_before,
+        target.margin,
+        target.domain_margin,
+        target.steep_margin,
+        target.lit_margin,
+        target.axis_margin,
+        target.facing_margin,
+    ):
+        _fill(numbers, first, last, np.nan)
+    _fill(target.second, first, last, np.inf)
+    for triples in (target.patch, target.hit, target.albedo, target.normal):
+        _fill_triples(triples, first, last, np.nan, np.nan, np.nan)
 
 
 @device
@@ -120,11 +121,16 @@ def project_hits(fragments, count, constants, settings, hits):
     row_z = (clip[2, 0], clip[2, 1], clip[2, 2], clip[2, 3])
     row_w = (clip[3, 0], clip[3, 1], clip[3, 2], clip[3, 3])
     u, v, h, depth = lanes(), lanes(), lanes(), lanes()
-    index = index_lanes()
+    index, linear, before = lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
+        load(hits.u, first, u)
+        load(hits.v, first, v)
+        load(hits.h, first, h)
+        load_indices(hits.hit_index, first, index)
+        load_indices(hits.linear_index, first, linear)
+        load(hits.height_before, first, before)
         for lane in range(LANES):
-            i = first + lane
-            p_u, p_v, p_h, k = hits.u[i], hits.v[i], hits.h[i], hits.hit_index[i]
+            p_u, p_v, p_h = u[lane], v[lane], h[lane]
             x = world[0][0] + p_u * world[0][1] + p_v * world[0][2] + p_h * world[0][3]
             y = world[1][0] + p_u * world[1][1] + p_v * world[1][2] + p_h * world[1][3]
             z = world[2][0] + p_u * world[2][1] + p_v * world[2][2] + p_h * world[2][3]
@@ -134,24 +140,25 @@ def project_hits(fragments, count, constants, settings, hits):
             view_w = rows[3][0] * x + rows[3][1] * y + rows[3][2] * z + rows[3][3]
             clip_z = row_z[0] * view_x + row_z[1] * view_y + row_z[2] * view_z + row_z[3] * view_w
             clip_w = row_w[0] * view_x + row_w[1] * view_y + row_w[2] * view_z + row_w[3] * view_w
-            kept = (k >= 0) & (not (clip_z < 0.0))
-            index[lane] = k if kept else np.int32(-1)
+            kept = (index[lane] >= 0.0) & (not (clip_z < 0.0))
+            index[lane] = index[lane] if kept else -1.0
+            linear[lane] = linear[lane] if kept else -1.0
+            before[lane] = before[lane] if kept else 0.0
             u[lane] = p_u if kept else np.nan
             v[lane] = p_v if kept else np.nan
             h[lane] = p_h if kept else np.nan
             depth[lane] = clip_z / clip_w
-        store(index, hits.hit_index, first)
         store(u, hits.u, first)
         store(v, hits.v, first)
         store(h, hits.h, first)
+        store_indices(index, hits.hit_index, first)
+        store_indices(linear, hits.linear_index, first)
+        store(before, hits.height_before, first)
         store(depth, hits.depth, first)
-    for i in range(count):
-        if hits.hit_index[i] < 0:
-            hits.linear_index[i] = -1
-            hits.height_before[i] = 0.0
-            hits.steep_margin[i] = np.nan
-        if settings.polygon_depth:
-            hits.depth[i] = fragments.depth[i]
+    if settings.keep or settings.polygon_depth:
+        for i in range(count):
+            hits.steep_margin[i] = hits.steep_margin[i] if hits.hit_index[i] >= 0 else np.nan
+            hits.depth[i] = fragments.depth[i] if settings.polygon_depth else hits.depth[i]
 
 
 SHOWN, NOTED, HIDDEN = 2, 1, 0
@@ -258,12 +265,14 @@ def write_shades(fragments, hits, shades, count, verdicts, target):
 
 @kernel
 def resolve_margins(target, margin):
-    """Distance in depth from what is shown to the nearest other kept fragment; NaN where no face covers the pixel."""
+    """Distance in depth from what is shown to the nearest other kept fragment; NaN where no face covers the pixel.
+
+    `margin` may be the array `second` of the target itself.
+    """
     chunk = 4096
     pixels = len(margin)
     for part in prange((pixels + chunk - 1) // chunk):
         for i in range(part * chunk, min(pixels, (part + 1) * chunk)):
             shown = target.depth[i] < 1.0
-            margin[i] = abs(target.second[i] - target.depth[i]) if shown else np.inf
-            if target.face[i] < 0:
-                margin[i] = np.nan
+            distance = abs(target.second[i] - target.depth[i]) if shown else np.inf
+            margin[i] = np.nan if target.face[i] < 0 else distance

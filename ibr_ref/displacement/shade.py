@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import lanes, load, store
 from ibr_ref.jit import LANES, device
-from ibr_ref.pipeline.lighting import lit_channel, phong, unit
+from ibr_ref.pipeline.lighting import lit_channel, towards, unit
 from ibr_ref.pipeline.sampling import fetch, footprint, mix_channel
+from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, store
 
 _LEAST_DIFFERENCE = 2.0**-16  # a smaller difference of heights is rounding, not a slope
 
@@ -18,10 +18,9 @@ _LEAST_DIFFERENCE = 2.0**-16  # a smaller difference of heights is rounding, not
 @device
 def nothing_kept(hits, first):
     """Whether a wave holds discarded fragments alone: it is not shaded."""
-    kept = np.int32(0)
-    for lane in range(LANES):
-        kept += np.int32(1) if hits.hit_index[first + lane] >= 0 else np.int32(0)
-    return kept == 0
+    index = lanes()
+    load_indices(hits.hit_index, first, index)
+    return largest(index) < 0.0
 
 
 @device
@@ -60,16 +59,17 @@ def height_normals(hits, count, constants, slope, normal):
     ux, uy, uz = across[0, 0], across[0, 1], across[0, 2]
     vx, vy, vz = across[1, 0], across[1, 1], across[1, 2]
     n0, n1, n2 = n[0], n[1], n[2]
-    x, y, z = lanes(), lanes(), lanes()
+    g_u, g_v, x, y, z = lanes(), lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
         if nothing_kept(hits, first):
             continue
+        load(slope[0], first, g_u)
+        load(slope[1], first, g_v)
         for lane in range(LANES):
-            g_u, g_v = slope[0, first + lane], slope[1, first + lane]
             x[lane], y[lane], z[lane] = unit(
-                n0 - scale * (g_u * ux + g_v * vx),
-                n1 - scale * (g_u * uy + g_v * vy),
-                n2 - scale * (g_u * uz + g_v * vz),
+                n0 - scale * (g_u[lane] * ux + g_v[lane] * vx),
+                n1 - scale * (g_u[lane] * uy + g_v[lane] * vy),
+                n2 - scale * (g_u[lane] * uz + g_v[lane] * vz),
             )
         store(x, normal[0], first)
         store(y, normal[1], first)
@@ -83,21 +83,23 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
     tx, ty, tz = frame[0, 0], frame[0, 1], frame[0, 2]
     bx, by, bz = frame[1, 0], frame[1, 1], frame[1, 2]
     nx, ny, nz = frame[2, 0], frame[2, 1], frame[2, 2]
-    x, y, z = lanes(), lanes(), lanes()
+    u, v, x, y, z = lanes(), lanes(), lanes(), lanes(), lanes()
     r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
     for first in range(0, count, LANES):
         if nothing_kept(hits, first):
             continue
+        load(hits.u, first, u)
+        load(hits.v, first, v)
         for lane in range(LANES):
-            i00, i10, i01, i11, fx, fy = footprint(hits.u[first + lane], hits.v[first + lane], columns, rows, repeat)
+            i00, i10, i01, i11, fx, fy = footprint(u[lane], v[lane], columns, rows, repeat)
             m0 = 2.0 * mix_channel(texels, r, i00, i10, i01, i11, fx, fy) - 1.0
             m1 = 2.0 * mix_channel(texels, g, i00, i10, i01, i11, fx, fy) - 1.0
             m2 = 2.0 * mix_channel(texels, b, i00, i10, i01, i11, fx, fy) - 1.0
-            x[lane], y[lane], z[lane] = unit(
+            zero = (m0 == 0.0) & (m1 == 0.0) & (m2 == 0.0)
+            along, across, up = unit(
                 m0 * tx + m1 * bx + m2 * nx, m0 * ty + m1 * by + m2 * ny, m0 * tz + m1 * bz + m2 * nz
             )
-            if (m0 == 0.0) & (m1 == 0.0) & (m2 == 0.0):
-                x[lane], y[lane], z[lane] = nx, ny, nz
+            x[lane], y[lane], z[lane] = nx if zero else along, ny if zero else across, nz if zero else up
         store(x, normal[0], first)
         store(y, normal[1], first)
         store(z, normal[2], first)
@@ -106,13 +108,15 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
 @device
 def albedos(repeat, hits, count, texels, columns, rows, albedo):
     """The colour map at the hits."""
-    red, green, blue = lanes(), lanes(), lanes()
+    u, v, red, green, blue = lanes(), lanes(), lanes(), lanes(), lanes()
     r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
     for first in range(0, count, LANES):
         if nothing_kept(hits, first):
             continue
+        load(hits.u, first, u)
+        load(hits.v, first, v)
         for lane in range(LANES):
-            i00, i10, i01, i11, fx, fy = footprint(hits.u[first + lane], hits.v[first + lane], columns, rows, repeat)
+            i00, i10, i01, i11, fx, fy = footprint(u[lane], v[lane], columns, rows, repeat)
             red[lane] = mix_channel(texels, r, i00, i10, i01, i11, fx, fy)
             green[lane] = mix_channel(texels, g, i00, i10, i01, i11, fx, fy)
             blue[lane] = mix_channel(texels, b, i00, i10, i01, i11, fx, fy)
@@ -171,34 +175,69 @@ def facades(hits, count, texels, columns, rows, constants, shades):
 
 
 @device
+def _four(array):
+    """A homogeneous point or direction as a tuple."""
+    return array[0], array[1], array[2], array[3]
+
+
+@device
 def light_hits(hits, count, constants, shades):
-    """Phong: albedo (ambient + diffuse lit max(0, n.l)) + specular lit max(0, r.v)^e where n.l > 0."""
-    light = (constants.light_world[0], constants.light_world[1], constants.light_world[2], constants.light_world[3])
-    eye = (constants.eye_world[0], constants.eye_world[1], constants.eye_world[2], constants.eye_world[3])
+    """Phong: albedo (ambient + diffuse lit max(0, n.l)) + specular lit max(0, r.v)^e where n.l > 0.
+
+    The power is raised by repeated squaring.
+    """
+    light, eye = _four(constants.light_world), _four(constants.eye_world)
     c, a = constants.corner, constants.axes
     c0, c1, c2 = c[0], c[1], c[2]
     u0, u1, u2, v0, v1, v2 = a[0, 0], a[0, 1], a[0, 2], a[1, 0], a[1, 1], a[1, 2]
     h0, h1, h2 = a[2, 0], a[2, 1], a[2, 2]
     ambient, diffuse, specular = constants.phong[0], constants.phong[1], constants.phong[2]
-    exponent = constants.exponent
-    red, green, blue, facing = lanes(), lanes(), lanes(), lanes()
+    # A place in the world (first u, v, h), the normal there, lit or not; then cosine n.l and specular term.
+    x, y, z, nx, ny, nz = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    lit, cosine, facing, power, shine, colour = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    for lane in range(LANES):
+        shine[lane] = 0.0
     for first in range(0, count, LANES):
         if nothing_kept(hits, first):
             continue
+        load(hits.u, first, x)
+        load(hits.v, first, y)
+        load(hits.h, first, z)
+        load(shades.normal[0], first, nx)
+        load(shades.normal[1], first, ny)
+        load(shades.normal[2], first, nz)
         for lane in range(LANES):
-            i = first + lane
-            u, v, h = hits.u[i], hits.v[i], hits.h[i]
-            x = c0 + u * u0 + v * v0 + h * h0
-            y = c1 + u * u1 + v * v1 + h * h1
-            z = c2 + u * u2 + v * v2 + h * h2
-            lit = 1.0 if shades.lit[i] else 0.0
-            nx, ny, nz = shades.normal[0, i], shades.normal[1, i], shades.normal[2, i]
-            bright, shine, cosine = phong(light, eye, x, y, z, nx, ny, nz, diffuse, specular, exponent, lit)
-            red[lane] = lit_channel(shades.albedo[0, i], ambient, bright, shine)
-            green[lane] = lit_channel(shades.albedo[1, i], ambient, bright, shine)
-            blue[lane] = lit_channel(shades.albedo[2, i], ambient, bright, shine)
-            facing[lane] = abs(cosine)
-        store(red, shades.color[0], first)
-        store(green, shades.color[1], first)
-        store(blue, shades.color[2], first)
+            lit[lane] = 1.0 if shades.lit[np.uintp(first + lane)] else 0.0
+        for lane in range(LANES):
+            u, v, h = x[lane], y[lane], z[lane]
+            x[lane] = c0 + u * u0 + v * v0 + h * h0
+            y[lane] = c1 + u * u1 + v * v1 + h * h1
+            z[lane] = c2 + u * u2 + v * v2 + h * h2
+        for lane in range(LANES):
+            lx, ly, lz = towards(light, x[lane], y[lane], z[lane])
+            cosine[lane] = nx[lane] * lx + ny[lane] * ly + nz[lane] * lz
+            facing[lane] = abs(cosine[lane])
+        if specular > 0.0:
+            for lane in range(LANES):
+                lx, ly, lz = towards(light, x[lane], y[lane], z[lane])
+                ex, ey, ez = towards(eye, x[lane], y[lane], z[lane])
+                twice = 2.0 * cosine[lane]
+                reflected = (twice * nx[lane] - lx) * ex + (twice * ny[lane] - ly) * ey + (twice * nz[lane] - lz) * ez
+                power[lane] = reflected if reflected > 0.0 else 0.0
+                shine[lane] = 1.0
+            exponent = constants.exponent
+            while exponent > 0:
+                for lane in range(LANES if exponent & 1 else 0):
+                    shine[lane] *= power[lane]
+                for lane in range(LANES):
+                    power[lane] *= power[lane]
+                exponent >>= 1
+            for lane in range(LANES):
+                shine[lane] = specular * lit[lane] * shine[lane] if cosine[lane] > 0.0 else 0.0
         store(facing, shades.facing_margin, first)
+        for channel in range(3):
+            load(shades.albedo[channel], first, colour)
+            for lane in range(LANES):
+                bright = diffuse * lit[lane] * (cosine[lane] if cosine[lane] > 0.0 else 0.0)
+                colour[lane] = lit_channel(colour[lane], ambient, bright, shine[lane])
+            store(colour, shades.color[channel], first)

@@ -1,4 +1,4 @@
-"""Triangle meshes from files: Wavefront OBJ here, PLY, STL and glTF through trimesh."""
+"""Triangle meshes from files: Wavefront OBJ and Bézier patches here, PLY, STL and glTF through trimesh."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.io import obj
+from ibr_ref.io import bpt, obj
+from ibr_ref.io.bezier import tessellate
 from ibr_ref.io.files import contents, naming
-from ibr_ref.scene import Mesh
+from ibr_ref.scene import Mesh, checks
 
 _BINARY_STL_HEADER, _BINARY_STL_TRIANGLE = 84, 50
 """Bytes."""
@@ -26,26 +27,36 @@ _TRIMESH_OPTIONS: dict[str, dict[str, bool]] = {
     ".gltf": {"skip_materials": True},
 }
 
+_MOST_QUADS = 256
+
 _SILENT = logging.NullHandler()
 """Without a handler, trimesh's warnings would go to standard error, beside the one line that says what is wrong."""
 
 
-def read_mesh(path: str | PathLike[str]) -> Mesh:
-    """Read a mesh, told by its ending: .obj, .ply, .stl, .glb, .gltf.
+def read_mesh(path: str | PathLike[str], quads: int = 6) -> Mesh:
+    """Read a mesh, told by its ending: .obj, .ply, .stl, .glb, .gltf, .bpt.
 
     Vertices and triangles are those of the file, in its order, nothing merged: an STL has three vertices a triangle.
     Polygons are cut into triangles, the parts of a glTF scene put in their places and joined. Vertex colours are kept
     (8 bits each, but for OBJ: as written); materials and textures are not read.
 
+    Bicubic Bézier patches (.bpt, both dialects: `ibr_ref.io.bpt`) are cut into quads x quads pieces of two triangles each,
+    1 to 256; with 6 the 32 patches of Newell's teapot are the 1,152 polygons of Kang & Ihm's. Other files ignore `quads`.
+
     Raises OSError or ValueError, in one line that starts with the path, for what cannot be read, is no such file, is
     not all there, or is no `Mesh`: no triangles, vertices that are not finite, corners that do not exist.
     """
+    quads = checks.whole("quads", quads, low=1, high=_MOST_QUADS)
     data = contents(path)
     ending = Path(path).suffix.lower()
-    if ending != ".obj" and ending not in _TRIMESH_OPTIONS:
-        raise ValueError(f"{path}: found the ending {ending!r}, allowed: .obj, {', '.join(_TRIMESH_OPTIONS)}")
     with naming(path):
-        return _from_obj(data) if ending == ".obj" else _from_trimesh(data, ending, path)
+        if ending == ".obj":
+            return _from_obj(data)
+        if ending == ".bpt":
+            return _from_patches(data, quads)
+        if ending in _TRIMESH_OPTIONS:
+            return _from_trimesh(data, ending, path)
+        raise ValueError(f"found the ending {ending!r}, allowed: .obj, {', '.join(_TRIMESH_OPTIONS)}, .bpt")
 
 
 def _from_obj(data: bytes) -> Mesh:
@@ -53,6 +64,11 @@ def _from_obj(data: bytes) -> Mesh:
     fields: dict[str, Any] = {"color": polygons.colors} if polygons.colors else {}
     vertices, triangles = np.reshape(polygons.vertices, (-1, 3)), np.reshape(polygons.triangles, (-1, 3))
     return Mesh(vertices=vertices, triangles=triangles.astype(np.int64), **fields)
+
+
+def _from_patches(data: bytes, quads: int) -> Mesh:
+    vertices, triangles = tessellate(bpt.decode(data), quads)
+    return Mesh(vertices=vertices, triangles=triangles)
 
 
 def _from_trimesh(data: bytes, ending: str, path: str | PathLike[str]) -> Mesh:

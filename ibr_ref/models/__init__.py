@@ -1,11 +1,36 @@
 """Built-in inputs, made by formula: the same bits on every machine.
 
-`box()` is the paper's figure 6, `city(seed)` a town in the spirit of its figures 15 and 16, `city_blocks(seed, count)`
-the same town as a scene of many polygons, `buildings(seed)` the list of the wings that the town is drawn from.
+For displacement mapping `box()` is the paper's figure 6, `city(seed)` a town in the spirit of its figures 15 and 16,
+`city_blocks(seed, count)` the same town as a scene of many polygons, `buildings(seed)` the list of the wings that the town
+is drawn from.
+
+Meshes, each of closed parts wound outward: `kettle()`, `chair()` and `horse()` with 1,152, 1,464 and 5,804 triangles, as
+many as the teapot, the chair and the cow of the shadows' tables have polygons; `sphere()` and `knot()`.
+
+`depth_rig(mesh, count)` takes the reference images of splatting of any mesh, `depth_image(mesh, camera)` one from where
+you like: the truth that a splatted view can be held against.
 """
 
 from ibr_ref.models.box import box
+from ibr_ref.models.chair import chair
 from ibr_ref.models.city import city, city_blocks
 from ibr_ref.models.city_plan import buildings
+from ibr_ref.models.depth_rig import depth_image, depth_rig
+from ibr_ref.models.horse import horse
+from ibr_ref.models.kettle import kettle
+from ibr_ref.models.knot import knot
+from ibr_ref.models.sphere import sphere
 
-__all__ = ["box", "buildings", "city", "city_blocks"]
+__all__ = [
+    "box",
+    "buildings",
+    "chair",
+    "city",
+    "city_blocks",
+    "depth_image",
+    "depth_rig",
+    "horse",
+    "kettle",
+    "knot",
+    "sphere",
+]

@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
+from ibr_ref.pipeline.memory import arrays
 from ibr_ref.pipeline.merge import passes
 from ibr_ref.pipeline.sampling import clamped
 
+_BAND_SHIFT = np.uint32(3)
 BAND_ROWS = 8
 """Rows of a band: the buffers of one, of a common picture, fit into the L2 cache."""
 
@@ -28,12 +30,23 @@ _PARTS = 32  # into which a list of splats is cut, to be sorted by all threads
 class Splats(NamedTuple):
     """What is drawn, one row a splat."""
 
-    window: NDArray[np.float64]
-    """(N, 2) window x and y of the centres; NaN: not drawn."""
+    x: NDArray[np.float64]
+    """(N,) window x of the centres; NaN: not drawn."""
+    y: NDArray[np.float64]
+    """(N,) window y."""
     depth: NDArray[np.float64]
     """(N,) window depth, <= 1."""
     width: NDArray[np.float64]
     """(N,) pixels, >= 0."""
+
+
+class Spans(NamedTuple):
+    """The pixels [left, right) x [top, stop) of each splat's square, (N,) each."""
+
+    left: NDArray[np.int32]
+    right: NDArray[np.int32]
+    top: NDArray[np.int32]
+    stop: NDArray[np.int32]
 
 
 class Target(NamedTuple):
@@ -51,12 +64,15 @@ class Target(NamedTuple):
 
 def target_for(width: int, height: int, keep: bool) -> Target:
     """Cleared buffers; with `keep` those of the stages too."""
-    return Target(
-        splat=np.full((height, width), -1, np.int32),
-        depth=np.ones((height, width)),
-        overdraw=np.zeros((height if keep else 0, width), np.int32),
-        second=np.full((height if keep else 0, width), np.inf),
+    picture, noted = (height, width), (height if keep else 0, width)
+    target = Target(
+        *arrays([(np.int32, picture), (np.float64, picture)]), *arrays([(np.int32, noted), (np.float64, noted)])
     )
+    target.splat.fill(-1)
+    target.depth.fill(1.0)
+    target.overdraw.fill(0)
+    target.second.fill(np.inf)
+    return target
 
 
 @device
@@ -73,94 +89,155 @@ def span(center, width, size):
     """
     first = np.ceil(center - width / 2.0 - 0.5)
     stop = np.ceil(center + width / 2.0 - 0.5)
-    return np.int64(clamped(first, 0.0, size)), np.int64(clamped(stop, 0.0, size))
+    return np.int32(clamped(first, 0.0, size)), np.int32(clamped(stop, 0.0, size))
 
 
 @device
-def _rows(splats, i, columns, rows):
-    """The rows [first, stop) that a splat covers anything in."""
-    width = splats.width[i]
-    first, stop = span(snapped(splats.window[i, 0]), width, columns)
-    if first >= stop:
-        return np.int64(0), np.int64(0)
-    return span(snapped(splats.window[i, 1]), width, rows)
+def _fill_spans(center, width, size, low, high):
+    """What splats cover along one axis; whole arrays, few of them and no branches, so that LLVM turns it into SIMD."""
+    for i in range(len(center)):
+        low[i], high[i] = span(snapped(center[i]), width[i], size)
 
 
 @device
-def _count_part(splats, first, last, columns, rows, counts):
-    for i in range(first, last):
-        top, stop = _rows(splats, i, columns, rows)
-        if top < stop:
-            for band in range(top // BAND_ROWS, (stop - 1) // BAND_ROWS + 1):
-                counts[band] += 1
+def _bands(left, right, top, stop):
+    """The bands [first, stop) that a splat covers anything in, none of them negative."""
+    first = np.uint32(top) >> _BAND_SHIFT
+    empty = (left >= right) | (top >= stop)
+    return first, first if empty else (np.uint32(stop - np.int32(1)) >> _BAND_SHIFT) + np.uint32(1)
+
+
+@device
+def _set_up_part(x, y, width, columns, rows, left, right, top, stop, counts):
+    _fill_spans(x, width, columns, left, right)
+    _fill_spans(y, width, rows, top, stop)
+    for i in range(len(x)):
+        band, end = _bands(left[i], right[i], top[i], stop[i])
+        while band < end:
+            counts[band] += 1
+            band += np.uint32(1)
 
 
 @kernel
-def _count(splats, columns, rows, counts):
-    """Splats of each part of the list that each band has a share in: counts (parts, bands)."""
+def _set_up(x, y, width, columns, rows, spans, counts):
+    """What each splat covers, and how many of each part of the list each band has a share in: counts (parts, bands)."""
+    left, right, top, stop = spans
     parts = len(counts)
-    chunk = (len(splats.depth) + parts - 1) // parts
+    chunk = (len(width) + parts - 1) // parts
     for part in prange(parts):
-        last = min(len(splats.depth), (part + 1) * chunk)
-        _count_part(splats, part * chunk, last, columns, rows, counts[part])
+        first, last = min(len(width), part * chunk), min(len(width), (part + 1) * chunk)
+        _set_up_part(
+            x[first:last], y[first:last], width[first:last], columns, rows,
+            left[first:last], right[first:last], top[first:last], stop[first:last], counts[part],
+        )  # fmt: skip
 
 
 @device
-def _sort_part(splats, first, last, columns, rows, ends, members):
+def _sort_part(left, right, top, stop, first, last, ends, members):
     for i in range(first, last):
-        top, stop = _rows(splats, i, columns, rows)
-        if top < stop:
-            for band in range(top // BAND_ROWS, (stop - 1) // BAND_ROWS + 1):
-                members[ends[band]] = i
-                ends[band] += 1
+        band, end = _bands(left[i], right[i], top[i], stop[i])
+        while band < end:
+            members[ends[band]] = i
+            ends[band] += 1
+            band += np.uint32(1)
 
 
 @kernel
-def _sort(splats, columns, rows, ends, members):
+def _sort(spans, ends, members):
     """Members of each band, in order; `ends` (parts, bands): where each part's share starts, moved to its end."""
+    left, right, top, stop = spans
     parts = len(ends)
-    chunk = (len(splats.depth) + parts - 1) // parts
+    chunk = (len(left) + parts - 1) // parts
     for part in prange(parts):
-        last = min(len(splats.depth), (part + 1) * chunk)
-        _sort_part(splats, part * chunk, last, columns, rows, ends[part], members)
+        first, last = min(len(left), part * chunk), min(len(left), (part + 1) * chunk)
+        _sort_part(left, right, top, stop, first, last, ends[part], members)
 
 
 @device
-def _draw_pixel(target, row, column, splat, depth):
-    """Depth test of one splat on one pixel, and what the stages note of it."""
+def _test(row, column, z, index, splat, depth):
+    """Depth test and write, without a branch: about every second one passes, which no processor can predict."""
+    stored = depth[row, column]
+    nearer = passes(z, stored)
+    depth[row, column] = z if nearer else stored
+    splat[row, column] = index if nearer else splat[row, column]
+
+
+@device
+def _draw_squares(spans, depths, members, first_row, last_row, base, splat, depth):
+    """Draw the squares of a band, in order, into its rows [first_row, last_row).
+
+    Those of up to 2 x 2 pixels, the usual ones, are tested at their four corners, some of which may be the same pixel:
+    a second test of it fails.
+    """
+    left, right, top, stop = spans
+    for member in members:
+        i = np.uint32(member)  # unsigned: an index that might be negative costs a comparison each time
+        z, index = depths[i], np.int32(base + member)
+        first_column, last_column = np.uint32(left[i]), np.uint32(right[i] - 1)
+        upper, lower = np.uint32(max(top[i], first_row)), np.uint32(min(stop[i], last_row) - 1)
+        if last_column - first_column < 2 and lower - upper < 2:
+            _test(upper, first_column, z, index, splat, depth)
+            _test(upper, last_column, z, index, splat, depth)
+            _test(lower, first_column, z, index, splat, depth)
+            _test(lower, last_column, z, index, splat, depth)
+        else:
+            for row in range(upper, lower + np.uint32(1)):
+                for column in range(first_column, last_column + np.uint32(1)):
+                    _test(row, column, z, index, splat, depth)
+
+
+@device
+def covers(disc, column, row, x, y, width):
+    """Whether a disc covers a pixel of its square; a square covers them all."""
+    dx, dy = column + 0.5 - x, row + 0.5 - y
+    return (not disc) | (dx * dx + dy * dy <= width * width / 4.0)
+
+
+@device
+def _draw_discs(splats, spans, members, first_row, last_row, base, splat, depth):
+    """Draw the discs of a band, in order, into its rows [first_row, last_row)."""
+    xs, ys, depths, widths = splats
+    for i in members:
+        x, y, width, z = snapped(xs[i]), snapped(ys[i]), widths[i], depths[i]
+        for row in range(max(spans.top[i], first_row), min(spans.stop[i], last_row)):
+            for column in range(spans.left[i], spans.right[i]):
+                if covers(True, column, row, x, y, width):
+                    _test(row, column, z, np.int32(base + i), splat, depth)
+
+
+@device
+def _note_band(splats, spans, members, disc, first_row, last_row, depth, overdraw, second):
+    """Before a band is drawn, note for the stages how many of its members cover each pixel, and the second-nearest of all.
+
+    `depth` holds the nearest so far, a copy of the buffer's rows.
+    """
+    xs, ys, depths, widths = splats
+    for i in members:
+        x, y, width, z = snapped(xs[i]), snapped(ys[i]), widths[i], depths[i]
+        for row in range(max(spans.top[i], first_row), min(spans.stop[i], last_row)):
+            for column in range(spans.left[i], spans.right[i]):
+                if covers(disc, column, row, x, y, width):
+                    nearest = depth[row - first_row, column]
+                    if overdraw[row, column] > 0:
+                        second[row, column] = min(second[row, column], max(z, nearest))
+                    overdraw[row, column] += 1
+                    depth[row - first_row, column] = min(z, nearest)
+
+
+@device
+def _draw_band(splats, spans, members, disc, first_row, base, target):
+    last_row = min(target.splat.shape[0], first_row + BAND_ROWS)
     if len(target.overdraw) > 0:
-        if target.overdraw[row, column] > 0:
-            behind = max(depth, target.depth[row, column])
-            target.second[row, column] = min(target.second[row, column], behind)
-        target.overdraw[row, column] += 1
-    if passes(depth, target.depth[row, column]):
-        target.depth[row, column] = depth
-        target.splat[row, column] = splat
-
-
-@device
-def _draw_splat(splats, i, disc, first_row, last_row, base, target):
-    """Draw one splat into the rows [first_row, last_row) of the picture."""
-    x, y, width, depth = snapped(splats.window[i, 0]), snapped(splats.window[i, 1]), splats.width[i], splats.depth[i]
-    left, right = span(x, width, np.float64(target.splat.shape[1]))
-    top, stop = span(y, width, np.float64(target.splat.shape[0]))
-    splat = np.int32(base + i)
-    for row in range(max(top, first_row), min(stop, last_row)):
-        dy = row + 0.5 - y
-        for column in range(left, right):
-            dx = column + 0.5 - x
-            if not disc or dx * dx + dy * dy <= width * width / 4.0:
-                _draw_pixel(target, row, column, splat, depth)
-
-
-@device
-def _draw_band(splats, members, disc, first_row, last_row, base, target):
-    for member in range(len(members)):
-        _draw_splat(splats, members[member], disc, first_row, last_row, base, target)
+        nearest = target.depth[first_row:last_row].copy()
+        _note_band(splats, spans, members, disc, first_row, last_row, nearest, target.overdraw, target.second)
+    if disc:
+        _draw_discs(splats, spans, members, first_row, last_row, base, target.splat, target.depth)
+    else:
+        _draw_squares(spans, splats.depth, members, first_row, last_row, base, target.splat, target.depth)
 
 
 @kernel
-def _draw(splats, members, starts, disc, base, target):
+def _draw(splats, spans, members, starts, disc, base, target):
     """All bands, in an order that gives every thread an even sample of the picture."""
     bands = len(starts) - 1
     stride = max(1, int(bands * 0.618))
@@ -168,18 +245,18 @@ def _draw(splats, members, starts, disc, base, target):
         stride += 1
     for turn in prange(bands):
         band = (turn * stride) % bands
-        last_row = min(target.splat.shape[0], (band + 1) * BAND_ROWS)
-        _draw_band(splats, members[starts[band] : starts[band + 1]], disc, band * BAND_ROWS, last_row, base, target)
+        _draw_band(splats, spans, members[starts[band] : starts[band + 1]], disc, band * BAND_ROWS, base, target)
 
 
 def draw_splats(splats: Splats, disc: bool, base: int, target: Target) -> None:
     """Draw splats into `target`, over what has been drawn before; the first of them has the index `base` there."""
     rows, columns = target.splat.shape
     bands = -(-rows // BAND_ROWS)
+    spans = Spans(*arrays([(np.int32, (len(splats.depth),))] * 4))
     counts = np.zeros((_PARTS, bands), np.int64)
-    _count(splats, float(columns), float(rows), counts)
+    _set_up(splats.x, splats.y, splats.width, float(columns), float(rows), spans, counts)
     ends = np.cumsum(counts.T).reshape(bands, _PARTS).T  # band by band, in each the parts in order
     starts = np.append(ends[0] - counts[0], ends[-1, -1])
-    members = np.empty(int(starts[-1]), np.int32)
-    _sort(splats, float(columns), float(rows), np.ascontiguousarray(ends - counts), members)
-    _draw(splats, members, starts, disc, base, target)
+    (members,) = arrays([(np.int32, (int(starts[-1]),))])
+    _sort(spans, np.ascontiguousarray(ends - counts), members)
+    _draw(splats, spans, members, starts, disc, base, target)

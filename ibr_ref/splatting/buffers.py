@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.pipeline.memory import arrays
+
 Floats = NDArray[np.float64]
 
 
@@ -72,8 +74,10 @@ class Lighting(NamedTuple):
 class Vertices(NamedTuple):
     """Stage vertex: where the points land, in order of (image, row, column). A dropped one: NaN, and width 0."""
 
-    window: Floats
-    """(V, 2) pixels."""
+    x: Floats
+    """(V,) window, pixels."""
+    y: Floats
+    """(V,) window, pixels, downwards."""
     depth: Floats
     """(V,) window depth."""
     width: Floats
@@ -82,4 +86,4 @@ class Vertices(NamedTuple):
 
 def vertices_for(count: int) -> Vertices:
     """Room for so many points."""
-    return Vertices(np.empty((count, 2)), np.empty(count), np.empty(count))
+    return Vertices(*arrays([(np.float64, (count,))] * 4))

@@ -11,18 +11,57 @@ from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.splatting.buffers import Lighting, Reference, View
-from ibr_ref.splatting.vertex import vertex_color
+from ibr_ref.splatting.vertex import light_pixels
 
 
 @device
-def _resolve_row(reference, normals, lighting, eye, first, winners, colors):
-    count = len(reference.pixels)
+def _resolve_stored(stored, pixels, first, winners, color):
+    """Without a light the winners of this image in a row of the picture have its own colours."""
+    count = len(pixels)
     for column in range(len(winners)):
         i = winners[column] - first
         if 0 <= i < count:
-            colors[column, 0], colors[column, 1], colors[column, 2] = vertex_color(
-                reference, normals, lighting, eye, reference.pixels[i]
-            )
+            pixel = np.uint32(pixels[np.uint32(i)])
+            color[column, 0], color[column, 1], color[column, 2] = stored[pixel, 0], stored[pixel, 1], stored[pixel, 2]
+
+
+@device
+def _resolve_lit(reference, normals, lighting, eye, first, winners, color):
+    """The winners of this image in a row of the picture are gathered, lit together, and put where they are seen."""
+    pixels, count = reference.pixels, len(reference.pixels)
+    seen, columns = np.empty(len(winners), np.int32), np.empty(len(winners), np.int32)
+    shown = 0
+    for column in range(len(winners)):
+        i = winners[column] - first
+        if 0 <= i < count:
+            seen[shown], columns[shown] = pixels[np.uint32(i)], column
+            shown += 1
+    colors = np.empty((shown, 3))
+    light_pixels(reference, normals, lighting, eye, seen[:shown], colors)
+    for i in range(shown):
+        column = columns[i]
+        color[column, 0], color[column, 1], color[column, 2] = colors[i, 0], colors[i, 1], colors[i, 2]
+
+
+@device
+def _resolve_row(reference, normals, lighting, eye, first, winners, color):
+    if lighting.lit:
+        _resolve_lit(reference, normals, lighting, eye, first, winners, color)
+    else:
+        _resolve_stored(reference.color, reference.pixels, first, winners, color)
+
+
+@device
+def _clear_row(background, color):
+    for column in range(len(color)):
+        color[column, 0], color[column, 1], color[column, 2] = background[0], background[1], background[2]
+
+
+@kernel
+def clear(background, color):
+    """The background (3,) everywhere in the picture (H, W, 3)."""
+    for row in prange(len(color)):
+        _clear_row(background, color[row])
 
 
 @kernel

@@ -88,12 +88,12 @@ def _normals(depth, valid, points, eye, rows, columns, codes):
 
 
 @device
-def decoded(codes, pixel):
+def decoded(x, y, z):
     """The unit normal that a pixel's code stands for: (k - 128)/127, normalized."""
     return unit(
-        (np.float64(codes[pixel, 0]) - 128.0) / 127.0,
-        (np.float64(codes[pixel, 1]) - 128.0) / 127.0,
-        (np.float64(codes[pixel, 2]) - 128.0) / 127.0,
+        (np.float64(x) - 128.0) / 127.0,
+        (np.float64(y) - 128.0) / 127.0,
+        (np.float64(z) - 128.0) / 127.0,
     )
 
 

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.io import Frame
+from ibr_ref.pipeline.memory import arrays
 from ibr_ref.pipeline.points import Splats, Target, draw_splats, target_for
 from ibr_ref.scene import Light
 from ibr_ref.splatting import atlas
 from ibr_ref.splatting.buffers import Law, Lighting, Vertices, View, vertices_for
-from ibr_ref.splatting.fragment import resolve
+from ibr_ref.splatting.fragment import clear, resolve
 from ibr_ref.splatting.inputs import Params, Scene
 from ibr_ref.splatting.references import Prepared, prepare, view_of
 from ibr_ref.splatting.vertex import color_vertices, place
 
-BLOCK_POINTS = 1 << 17
+BATCH_POINTS = 1 << 17
 """Points that are placed and drawn at a time, about: their arrays stay in the cache, and memory does not grow with them."""
-
-_BLOCK_ROWS = 4096
 
 
 def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -> Frame:
@@ -37,21 +36,22 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
     view, law, lighting = view_of(scene.camera), _law(params), _lighting(scene.light)
     target = target_for(scene.camera.width, scene.camera.height, stages)
     starts = np.cumsum([0] + [reference.points for reference in references]).tolist()
-    vertices = vertices_for(starts[-1]) if stages else None
-    for i, reference in enumerate(references):
-        for first_row, last_row in _blocks(reference):
-            base = starts[i] + int(reference.reference.row_starts[first_row])
-            count = starts[i] + int(reference.reference.row_starts[last_row]) - base
-            block = vertices_for(count) if vertices is None else Vertices(*(a[base : base + count] for a in vertices))
-            if not place(reference.reference, view, law, first_row, last_row, block):
-                raise ValueError(_unsound(params, i, first_row, last_row))
-            draw_splats(Splats(*block), params.shape == "disc", base, target)
-    color = np.empty((*target.splat.shape, 3))
-    color[:] = scene.background
-    for first, reference in zip(starts, references, strict=False):
-        resolve(reference.reference, _normals(reference, lighting), lighting, view, first, target.splat, color)
+    batches = list(_batches(references, starts))
+    vertices = vertices_for(starts[-1] if stages else max(batch[-1].stop - batch[0].first for batch in batches))
+    for batch in batches:
+        base = batch[0].first if not stages else 0
+        for rows in batch:
+            block = _part(vertices, rows.first - base, rows.stop - base)
+            if not place(references[rows.image].reference, view, law, rows.first_row, rows.last_row, block):
+                raise ValueError(_unsound(params, rows))
+        drawn = _part(vertices, batch[0].first - base, batch[-1].stop - base)
+        draw_splats(Splats(*drawn), params.shape == "disc", batch[0].first, target)
+    (color,) = arrays([(np.float64, (*target.splat.shape, 3))])
+    clear(np.array(scene.background), color)
+    for first, prepared in zip(starts, references, strict=False):
+        resolve(prepared.reference, _normals(prepared, lighting), lighting, view, first, target.splat, color)
     frame = Frame(color=color, depth=target.depth, stages={})
-    if vertices is not None:
+    if stages:
         frame.stages.update(_atlas_stages(references, rects))
         frame.stages.update(_vertex_stages(references, starts, vertices, lighting, view))
         frame.stages.update(_raster_stages(target))
@@ -74,22 +74,43 @@ def _normals(reference: Prepared, lighting: Lighting) -> NDArray[np.uint8]:
     return reference.normals if lighting.lit else np.empty((0, 3), np.uint8)
 
 
-def _blocks(reference: Prepared) -> Iterator[tuple[int, int]]:
-    """Ranges of image rows with about BLOCK_POINTS points each."""
-    row_starts, row = reference.reference.row_starts, 0
-    while row < len(row_starts) - 1:
-        stop = int(np.searchsorted(row_starts, row_starts[row] + BLOCK_POINTS, side="right")) - 1
-        stop = min(max(stop, row + 1), row + _BLOCK_ROWS)
-        if row_starts[stop] > row_starts[row]:
-            yield row, stop
-        row = stop
+class Rows(NamedTuple):
+    """A range of rows of a reference image, and the indices [first, stop) of its points."""
+
+    image: int
+    first_row: int
+    last_row: int
+    first: int
+    stop: int
 
 
-def _unsound(params: Params, image: int, first_row: int, last_row: int) -> str:
+def _batches(references: Sequence[Prepared], starts: Sequence[int]) -> Iterator[list[Rows]]:
+    """All points in order: rows of one image or several, with about BATCH_POINTS points together."""
+    batch: list[Rows] = []
+    for image, prepared in enumerate(references):
+        row_starts, row = prepared.reference.row_starts, 0
+        while row < len(row_starts) - 1:
+            last = int(np.searchsorted(row_starts, row_starts[row] + BATCH_POINTS, side="right")) - 1
+            last = max(last, row + 1)
+            rows = Rows(image, row, last, starts[image] + int(row_starts[row]), starts[image] + int(row_starts[last]))
+            if batch and rows.stop - batch[0].first > BATCH_POINTS:
+                yield batch
+                batch = []
+            if rows.stop > rows.first:
+                batch.append(rows)
+            row = last
+    yield batch
+
+
+def _part(vertices: Vertices, first: int, stop: int) -> Vertices:
+    return Vertices(*(array[first:stop] for array in vertices))
+
+
+def _unsound(params: Params, rows: Rows) -> str:
     law = f"{params.beta:g} d^2 + {params.gamma:g} d + {params.delta:g}"
     return (
-        f"beta, gamma, delta: found {law}, not positive for a point in view (images[{image}], rows {first_row} to "
-        f"{last_row - 1}), allowed: a law whose denominator is > 0 for every point in view"
+        f"beta, gamma, delta: found {law}, not positive for a point in view (images[{rows.image}], rows "
+        f"{rows.first_row} to {rows.last_row - 1}), allowed: a law whose denominator is > 0 for every point in view"
     )
 
 
@@ -126,7 +147,7 @@ def _vertex_stages(
         source[part, 0] = i
         np.divmod(reference.reference.pixels, reference.reference.columns, out=(source[part, 1], source[part, 2]))
     return {
-        "vertex.window": vertices.window,
+        "vertex.window": np.stack([vertices.x, vertices.y], axis=1),
         "vertex.depth": vertices.depth,
         "vertex.width": vertices.width,
         "vertex.color": colors,

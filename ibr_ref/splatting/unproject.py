@@ -10,9 +10,9 @@ from ibr_ref.splatting.buffers import Reference
 
 
 @device
-def normalized_y(intrinsics, row):
+def normalized_y(f_y, center_y, row):
     """y_n of the centres of a row of pixels, downwards, at a distance of 1."""
-    return (row + 0.5 - intrinsics[1, 2]) / intrinsics[1, 1]
+    return (row + 0.5 - center_y) / f_y
 
 
 @device
@@ -35,29 +35,21 @@ def transform(row, x, y, z):
 
 
 @device
-def world_point(reference, pixel):
-    """World position of a pixel, given by its index."""
-    row = pixel // reference.columns
-    column = pixel - row * reference.columns
-    k = reference.intrinsics
-    y_n = normalized_y(k, row)
-    x_n = normalized_x(k[0, 0], k[0, 1], k[0, 2], column, y_n)
-    x, y, z = view_point(reference.perspective, x_n, y_n, reference.depth[pixel])
-    m = reference.world_from_view
-    return transform(m[0], x, y, z), transform(m[1], x, y, z), transform(m[2], x, y, z)
-
-
-@device
-def _row_points(reference, first, last, points):
-    for i in range(first, last):
+def _row_points(reference, row, points):
+    k, m = reference.intrinsics, reference.world_from_view
+    y_n = normalized_y(k[1, 1], k[1, 2], row)
+    for i in range(reference.row_starts[row], reference.row_starts[row + 1]):
         pixel = reference.pixels[i]
-        points[pixel, 0], points[pixel, 1], points[pixel, 2] = world_point(reference, pixel)
+        x_n = normalized_x(k[0, 0], k[0, 1], k[0, 2], pixel - row * reference.columns, y_n)
+        x, y, z = view_point(reference.perspective, x_n, y_n, reference.depth[pixel])
+        for axis in range(3):
+            points[pixel, axis] = transform(m[axis], x, y, z)
 
 
 @kernel
 def _points(reference, points):
     for row in prange(len(reference.row_starts) - 1):
-        _row_points(reference, reference.row_starts[row], reference.row_starts[row + 1], points)
+        _row_points(reference, row, points)
 
 
 def world_points(reference: Reference) -> NDArray[np.float64]:

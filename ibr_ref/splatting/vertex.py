@@ -1,7 +1,4 @@
-"""Stage vertex: every valid reference pixel becomes a point, placed in the window, given a width, and lit (section 3.3).
-
-Points run in waves of up to LANES pixels of one image row: without branches, so that LLVM turns the loops into SIMD.
-"""
+"""Stage vertex: every valid reference pixel becomes a point, placed in the window, given a width, and lit (section 3.3)."""
 
 from __future__ import annotations
 
@@ -10,9 +7,10 @@ from numpy.typing import NDArray
 
 from ibr_ref.jit import LANES, device, kernel, prange
 from ibr_ref.pipeline.lighting import lit_channel, phong
+from ibr_ref.pipeline.waves import lanes
 from ibr_ref.splatting.buffers import Law, Lighting, Reference, Vertices, View
 from ibr_ref.splatting.normals import decoded
-from ibr_ref.splatting.unproject import normalized_x, normalized_y, transform, view_point, world_point
+from ibr_ref.splatting.unproject import normalized_x, normalized_y, transform, view_point
 
 _PARTS = 32  # into which a block of image rows is cut, for the threads
 
@@ -20,10 +18,11 @@ _PARTS = 32  # into which a block of image rows is cut, for the threads
 @device
 def splat_width(law, d):
     """W_s at the distance d, clamped, and the law's denominator there."""
-    denominator = law.beta * (d * d) + law.gamma * d + law.delta
-    width = law.alpha / denominator
-    width = width if width < law.most else law.most
-    return (width if width > law.least else law.least), denominator
+    alpha, beta, gamma, delta, least, most = law
+    denominator = beta * (d * d) + gamma * d + delta
+    width = alpha / denominator
+    width = width if width < most else most
+    return (width if width > least else least), denominator
 
 
 @device
@@ -33,72 +32,76 @@ def _row(matrix, i):
 
 
 @device
-def _project(row, x, y, z, w):
-    return row[0] * x + row[1] * y + row[2] * z + row[3] * w
+def transform4(row0, row1, row2, row3, x, y, z, w):
+    """A (4, 4) matrix, by rows, applied to (x, y, z, w); w = 1 leaves the products of the last column exact."""
+    return (
+        row0[0] * x + row0[1] * y + row0[2] * z + row0[3] * w,
+        row1[0] * x + row1[1] * y + row1[2] * z + row1[3] * w,
+        row2[0] * x + row2[1] * y + row2[2] * z + row2[3] * w,
+        row3[0] * x + row3[1] * y + row3[2] * z + row3[3] * w,
+    )
 
 
 @device
-def _place_wave(reference, view, law, row, first, count, base, vertices):
-    """Place up to LANES points of an image row; whether the law has a positive denominator for all of them."""
-    m = reference.world_from_view
-    m0, m1, m2 = _row(m, 0), _row(m, 1), _row(m, 2)
-    v = view.view_from_world
-    v0, v1, v2, v3 = _row(v, 0), _row(v, 1), _row(v, 2), _row(v, 3)
-    c = view.clip_from_view
-    c0, c1, c2, c3 = _row(c, 0), _row(c, 1), _row(c, 2), _row(c, 3)
-    eye_x, eye_y, eye_z = view.eye[0], view.eye[1], view.eye[2]
-    y_n = normalized_y(reference.intrinsics, row)
-    f_x, skew, center_x = reference.intrinsics[0, 0], reference.intrinsics[0, 1], reference.intrinsics[0, 2]
-    start = np.int32(row * reference.columns)
-    x_n, depth, x, y, z = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    window_x, window_y, window_z = np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    width, flaw = np.empty(LANES), np.empty(LANES)
+def distance(eye, p):
+    """From the eye to a point."""
+    x, y, z = p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]
+    return np.sqrt(x * x + y * y + z * z)
+
+
+@device
+def _store(window_x, window_y, window_z, width, count, first, vertices):
+    """Copy a wave's lanes to their vertices."""
+    xs, ys, depths, widths = vertices
     for lane in range(count):
-        pixel = reference.pixels[first + lane]
-        depth[lane] = reference.depth[pixel]
-        x_n[lane] = np.float64(pixel - start)
-    for lane in range(count):
-        p_x, p_y, p_z = view_point(
-            reference.perspective, normalized_x(f_x, skew, center_x, x_n[lane], y_n), y_n, depth[lane]
-        )
-        x[lane] = transform(m0, p_x, p_y, p_z)
-        y[lane] = transform(m1, p_x, p_y, p_z)
-        z[lane] = transform(m2, p_x, p_y, p_z)
-    for lane in range(count):
-        p_x, p_y, p_z = x[lane], y[lane], z[lane]
-        view_x, view_y = transform(v0, p_x, p_y, p_z), transform(v1, p_x, p_y, p_z)
-        view_z, view_w = transform(v2, p_x, p_y, p_z), transform(v3, p_x, p_y, p_z)
-        clip_x, clip_y = _project(c0, view_x, view_y, view_z, view_w), _project(c1, view_x, view_y, view_z, view_w)
-        clip_z, clip_w = _project(c2, view_x, view_y, view_z, view_w), _project(c3, view_x, view_y, view_z, view_w)
-        kept = (clip_w > 0.0) & (clip_z >= 0.0) & (clip_z <= clip_w)
-        q_x, q_y, q_z = p_x - eye_x, p_y - eye_y, p_z - eye_z
-        d = np.sqrt(q_x * q_x + q_y * q_y + q_z * q_z) if view.perspective else -view_z
-        w, denominator = splat_width(law, d)
-        window_x[lane] = (clip_x / clip_w + 1.0) / 2.0 * view.width if kept else np.nan
-        window_y[lane] = (1.0 - clip_y / clip_w) / 2.0 * view.height if kept else np.nan
-        window_z[lane] = clip_z / clip_w if kept else np.nan
-        width[lane] = w if kept else 0.0
-        flaw[lane] = 1.0 if kept & (not denominator > 0.0) else 0.0
-    flaws = 0.0
-    for lane in range(count):
-        i = first + lane - base
-        vertices.window[i, 0] = window_x[lane]
-        vertices.window[i, 1] = window_y[lane]
-        vertices.depth[i] = window_z[lane]
-        vertices.width[i] = width[lane]
-        flaws += flaw[lane]
-    return flaws == 0.0
+        xs[first + lane], ys[first + lane] = window_x[lane], window_y[lane]
+        depths[first + lane], widths[first + lane] = window_z[lane], width[lane]
 
 
 @device
 def _place_rows(reference, view, law, first_row, last_row, base, vertices):
-    sound = True
+    """Place the points of the image rows [first_row, last_row); whether the law has a positive denominator for all.
+
+    The loops over lanes have no branches, and write to arrays that are made here: LLVM turns them into SIMD.
+    """
+    m, v, c, k = reference.world_from_view, view.view_from_world, view.clip_from_view, reference.intrinsics
+    m0, m1, m2 = _row(m, 0), _row(m, 1), _row(m, 2)
+    v0, v1, v2, v3 = _row(v, 0), _row(v, 1), _row(v, 2), _row(v, 3)
+    c0, c1, c2, c3 = _row(c, 0), _row(c, 1), _row(c, 2), _row(c, 3)
+    eye = (view.eye[0], view.eye[1], view.eye[2])
+    f_x, skew, center_x, f_y, center_y = k[0, 0], k[0, 1], k[0, 2], k[1, 1], k[1, 2]
+    pixels, depths, row_starts = reference.pixels, reference.depth, reference.row_starts
+    depth, x_n, x, y, z = lanes(), lanes(), lanes(), lanes(), lanes()
+    window_x, window_y, window_z, width, flaw, flaws = lanes(), lanes(), lanes(), lanes(), lanes(), 0.0
     for row in range(first_row, last_row):
-        stop = reference.row_starts[row + 1]
-        for first in range(reference.row_starts[row], stop, LANES):
-            count = min(LANES, stop - first)
-            sound &= _place_wave(reference, view, law, row, first, count, base, vertices)
-    return sound
+        y_n, start = normalized_y(f_y, center_y, row), np.int32(row * reference.columns)
+        for first in range(row_starts[row], row_starts[row + 1], LANES):
+            count = min(LANES, row_starts[row + 1] - first)
+            for lane in range(count):
+                pixel = pixels[first + lane]
+                depth[lane] = depths[pixel]
+                x_n[lane] = normalized_x(f_x, skew, center_x, np.float64(pixel - start), y_n)
+            for lane in range(count):
+                p_x, p_y, p_z = view_point(reference.perspective, x_n[lane], y_n, depth[lane])
+                x[lane] = transform(m0, p_x, p_y, p_z)
+                y[lane] = transform(m1, p_x, p_y, p_z)
+                z[lane] = transform(m2, p_x, p_y, p_z)
+            for lane in range(count):
+                p = (x[lane], y[lane], z[lane])
+                view_x, view_y, view_z, view_w = transform4(v0, v1, v2, v3, p[0], p[1], p[2], 1.0)
+                clip_x, clip_y, clip_z, clip_w = transform4(c0, c1, c2, c3, view_x, view_y, view_z, view_w)
+                kept = (clip_w > 0.0) & (clip_z >= 0.0) & (clip_z <= clip_w)
+                d = distance(eye, p) if view.perspective else -view_z
+                w, denominator = splat_width(law, d)
+                window_x[lane] = (clip_x / clip_w + 1.0) / 2.0 * view.width if kept else np.nan
+                window_y[lane] = (1.0 - clip_y / clip_w) / 2.0 * view.height if kept else np.nan
+                window_z[lane] = clip_z / clip_w if kept else np.nan
+                width[lane] = w if kept else 0.0
+                flaw[lane] = 1.0 if kept & (not denominator > 0.0) else 0.0
+            for lane in range(count):
+                flaws += flaw[lane]
+            _store(window_x, window_y, window_z, width, count, first - base, vertices)
+    return flaws == 0.0
 
 
 @kernel
@@ -119,26 +122,37 @@ def place(reference: Reference, view: View, law: Law, first_row: int, last_row: 
 
 
 @device
-def vertex_color(reference, normals, lighting, eye, pixel):
-    """Colour of a reference pixel's point: lit by its 8-bit normal, or as it is stored."""
-    r, g, b = reference.color[pixel, 0], reference.color[pixel, 1], reference.color[pixel, 2]
-    if not lighting.lit:
-        return r, g, b
-    x, y, z = world_point(reference, pixel)
-    nx, ny, nz = decoded(normals, pixel)
+def light_pixels(reference, normals, lighting, eye_array, pixels, colors):
+    """Colours (n, 3) of the points of some pixels (n,) of a reference image: Phong with its colour and 8-bit normal."""
+    albedo, depth, perspective, width = reference.color, reference.depth, reference.perspective, reference.columns
+    k, m = reference.intrinsics, reference.world_from_view
+    m0, m1, m2 = _row(m, 0), _row(m, 1), _row(m, 2)
+    light = (lighting.light[0], lighting.light[1], lighting.light[2], lighting.light[3])
+    eye = (eye_array[0], eye_array[1], eye_array[2], eye_array[3])
     ambient, diffuse, specular = lighting.phong[0], lighting.phong[1], lighting.phong[2]
-    bright, shine, _ = phong(lighting.light, eye, x, y, z, nx, ny, nz, diffuse, specular, lighting.exponent, 1.0)
-    return (
-        lit_channel(r, ambient, bright, shine),
-        lit_channel(g, ambient, bright, shine),
-        lit_channel(b, ambient, bright, shine),
-    )
+    for i in range(len(pixels)):
+        pixel = pixels[i]
+        row = pixel // width
+        y_n = normalized_y(k[1, 1], k[1, 2], row)
+        x_n = normalized_x(k[0, 0], k[0, 1], k[0, 2], pixel - row * width, y_n)
+        p_x, p_y, p_z = view_point(perspective, x_n, y_n, depth[pixel])
+        x, y, z = transform(m0, p_x, p_y, p_z), transform(m1, p_x, p_y, p_z), transform(m2, p_x, p_y, p_z)
+        nx, ny, nz = decoded(normals[pixel, 0], normals[pixel, 1], normals[pixel, 2])
+        bright, shine, _ = phong(light, eye, x, y, z, nx, ny, nz, diffuse, specular, lighting.exponent, 1.0)
+        for channel in range(3):
+            colors[i, channel] = lit_channel(albedo[pixel, channel], ambient, bright, shine)
 
 
 @device
 def _color_row(reference, normals, lighting, eye, row, colors):
-    for i in range(reference.row_starts[row], reference.row_starts[row + 1]):
-        colors[i, 0], colors[i, 1], colors[i, 2] = vertex_color(reference, normals, lighting, eye, reference.pixels[i])
+    first, stop = reference.row_starts[row], reference.row_starts[row + 1]
+    pixels, stored = reference.pixels[first:stop], reference.color
+    if lighting.lit:
+        light_pixels(reference, normals, lighting, eye, pixels, colors[first:stop])
+        return
+    for i in range(len(pixels)):
+        for channel in range(3):
+            colors[first + i, channel] = stored[pixels[i], channel]
 
 
 @kernel

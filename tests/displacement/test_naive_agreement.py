@@ -5,10 +5,8 @@ from __future__ import annotations
 import ast
 import hashlib
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
@@ -57,15 +55,6 @@ def agree(case: Case) -> None:
     frames.add(digest(arrays_of(frame)))
     if len(frames) > seen["scenes"]:
         seen.update(["scenes", *features(case.scene, case.params, frame)])
-
-
-@pytest.fixture
-def one_thread() -> Iterator[None]:
-    """Pictures of a few hundred pixels are slower on several threads, much slower where others want the cores too."""
-    before = numba.get_num_threads()
-    numba.set_num_threads(1)
-    yield
-    numba.set_num_threads(before)
 
 
 def run_scene(number: int) -> None:

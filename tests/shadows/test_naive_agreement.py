@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
@@ -64,15 +62,6 @@ def features(case: Case, frame: Frame) -> set[str]:
     }
 
 
-@pytest.fixture
-def one_thread() -> Iterator[None]:
-    """Pictures of a few hundred pixels are slower on several threads."""
-    before = numba.get_num_threads()
-    numba.set_num_threads(1)
-    yield
-    numba.set_num_threads(before)
-
-
 def run_scene(number: int) -> None:
     """Draw the simplest scene and a random one, each run with a seed of its own, and compare both."""
     chosen = settings(
@@ -89,3 +78,22 @@ def run_scene(number: int) -> None:
 @pytest.mark.parametrize("number", range(SCENES))
 def test_drawn_scene_agrees(number: int, one_thread: None) -> None:
     run_scene(number)
+
+
+EXPECTED = """
+method warp | method direct | method grid | content mask | content depth | policy dissolve | policy nearest
+samples 1 | samples 2 | samples 3 | samples 4 | samples 5 | samples 9 | accumulation float | accumulation unorm8
+quantize None mask | quantize 8 mask | quantize None depth | quantize 8 depth | pcf True depth | pcf False depth
+map samples 1 | map samples 2 | map samples 3 | mix True grid | mix False grid | shadow | half shadow
+beside the map | behind the light | beyond the far plane | on a middle line | at the end
+"""
+"""What must occur in the drawn scenes, each in at least three of them."""
+
+
+def test_drawn_scenes_cover_every_feature(one_thread: None) -> None:
+    if not seen:  # this test was chosen alone
+        for number in range(SCENES):
+            run_scene(number)
+    expected = [name for row in EXPECTED.strip().splitlines() for name in row.split(" | ")]
+    rare = {name: seen[name] for name in expected if seen[name] < 3}
+    assert not rare, f"of {seen['scenes']} scenes too few show: {rare}"

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
@@ -74,15 +72,6 @@ def agree(case: Case) -> None:
     frames.add(b"".join(array.tobytes() for array in arrays_of(frame).values()))
     if len(frames) > seen["scenes"]:
         seen.update(["scenes", *features(case, frame)])
-
-
-@pytest.fixture
-def one_thread() -> Iterator[None]:
-    """Pictures of a few pixels are slower on several threads."""
-    before = numba.get_num_threads()
-    numba.set_num_threads(1)
-    yield
-    numba.set_num_threads(before)
 
 
 def run_scene(number: int) -> None:

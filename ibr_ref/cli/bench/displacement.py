@@ -1,54 +1,17 @@
-"""`ibr-ref bench`: times of whole frames, beside the papers' figures."""
+"""`ibr-ref bench displacement`: the paper's frame rates (section 5)."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
-from enum import StrEnum
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
+from ibr_ref.cli.bench.times import best_and_median
 from ibr_ref.cli.progress import progress
 
 if TYPE_CHECKING:
     from ibr_ref.displacement import Params, Scene
 
-EXAMPLES = """
-Examples:
-
-    ibr-ref bench
-
-    ibr-ref bench displacement --repeat 50 --json times.json
-"""
-
-
-class Method(StrEnum):
-    """What is measured."""
-
-    all = "all"
-    displacement = "displacement"
-
-
 PAPER_FPS = {("box", 640, 10): 60, ("box", 640, 50): 25, ("box", 1000, 10): 30, ("box", 1000, 50): 10}
 """Frames a second of the paper's GeForce 6600GT (section 5), by scene, picture width and N."""
-
-
-def command(
-    method: Annotated[Method, typer.Argument(help="The method to measure.")] = Method.all,
-    repeat: Annotated[
-        int, typer.Option(min=1, max=1000, help="Frames of each kind; the best and the median count.")
-    ] = 20,
-    json: Annotated[Path | None, typer.Option(help="Also write the figures as JSON.")] = None,
-) -> None:
-    """Time whole frames with warm kernels, beside the figures that the papers give for their hardware."""
-    from rich.console import Console
-
-    rows = displacement_times(repeat)
-    Console().print(_table(rows))
-    if json is not None:
-        _write(json, rows)
 
 
 def _scenes() -> list[tuple[str, Scene, Params]]:
@@ -72,19 +35,7 @@ def _scenes() -> list[tuple[str, Scene, Params]]:
     return result
 
 
-def best_and_median(frame: Callable[[], object], repeat: int) -> tuple[float, float]:
-    """Seconds of one call, after one that warms up."""
-    frame()
-    times = []
-    for _ in range(repeat):
-        start = time.perf_counter()
-        frame()
-        times.append(time.perf_counter() - start)
-    times.sort()
-    return times[0], times[len(times) // 2]
-
-
-def displacement_times(repeat: int) -> list[dict[str, Any]]:
+def times(repeat: int) -> list[dict[str, Any]]:
     """One row for each scene, picture size and N."""
     from ibr_ref import displacement
 
@@ -104,7 +55,8 @@ def displacement_times(repeat: int) -> list[dict[str, Any]]:
     return rows
 
 
-def _table(rows: list[dict[str, Any]]) -> Any:
+def table(rows: list[dict[str, Any]]) -> Any:
+    """The rows as a table for the terminal."""
     from rich.table import Table
 
     import ibr_ref
@@ -126,12 +78,3 @@ def _table(rows: list[dict[str, Any]]) -> Any:
             "" if row["paper_ms"] is None else f"{row['paper_ms']:.1f}",
         )
     return table
-
-
-def _write(path: Path, rows: list[dict[str, Any]]) -> None:
-    import json
-
-    from ibr_ref.io.files import atomic
-
-    with atomic(path) as file:
-        file.write(json.dumps({"displacement": rows}, indent=2).encode() + b"\n")
