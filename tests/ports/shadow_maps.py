@@ -209,9 +209,14 @@ class WarpedMaps:
             item.release()
 
 
-def create_warped_maps(device: gl.Device, programs: Programs, maps: Any, params: Any, *, exact: bool) -> WarpedMaps:
-    """Upload `maps` (`image` (3, 3, S, S), `controls` (3, 3, R, C, 2)); exact: float32 throughout, else bytes of masks."""
-    dtype = "f4" if exact or params.content == "depth" else "f1"
+def create_warped_maps(
+    device: gl.Device, programs: Programs, maps: Any, params: Any, *, exact: bool, texels: str
+) -> WarpedMaps:
+    """Upload `maps` (`image` (3, 3, S, S), `controls` (3, 3, R, C, 2)).
+
+    exact: bilinear mixes in the shader. texels: "f4", or "f1" for bytes; depths are always floats.
+    """
+    dtype = "f4" if params.content == "depth" else texels
     image, controls = np.asarray(maps.image, float), np.asarray(maps.controls, float)
     size, (rows, columns) = image.shape[-1], controls.shape[2:4]
     flags = [*(["EXACT"] if exact else []), *(["NEAREST"] if params.policy == "nearest" else [])]

@@ -8,8 +8,8 @@ masks and depths, both policies, every way to compare, and both ways to accumula
    positions and is blended with (GL_SRC_ALPHA, GL_ONE), alpha = 1/N;
 3. one screen-filling triangle that mixes colour, light and shadow.
 
-With stages everything is float32, and bilinear mixes are made in the shader. Without, maps of masks are bytes, the sampler
-filters, colours and n . l are bytes too: what an application would do, and what is timed.
+With stages everything is float32, and bilinear mixes are made in the shader. Without, the sampler
+filters, colours and n . l are bytes, and so are masks, if wished: what an application would do, and what is timed.
 """
 
 from __future__ import annotations
@@ -201,8 +201,12 @@ class Port:
         caster.release()
         return np.stack(images).reshape(3, 3, *images[0].shape)
 
-    def prepare(self, scene: Any, params: Any, *, maps: Any = None, stages: bool = True) -> Prepared:
+    def prepare(
+        self, scene: Any, params: Any, *, maps: Any = None, stages: bool = True, texels: str = "f1"
+    ) -> Prepared:
         """Upload and link. `maps`: what `ibr_ref.shadows.prepare` made, for method="warp".
+
+        texels: "f1" or "f4", what warped masks are stored as without stages.
 
         Raises ValueError for methods and maps that are not ported.
         """
@@ -221,7 +225,9 @@ class Port:
         source: WarpedMaps | CasterMaps = (
             CasterMaps(self.device, self._programs, scene, params)
             if params.method == "direct"
-            else create_warped_maps(self.device, self._programs, maps, params, exact=stages)
+            else create_warped_maps(
+                self.device, self._programs, maps, params, exact=stages, texels="f4" if stages else texels
+            )
         )
         return Prepared(
             device=self.device,
