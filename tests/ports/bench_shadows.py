@@ -102,7 +102,7 @@ def measure(
         contenders["ibr_ref"] = timed(lambda: package_maps(scene, params, maps))
     seconds = in_blocks(contenders, blocks)
     limit = f"; wanted of ibr_ref: {WANTED[title]:g} ms" if title in WANTED else ""
-    print(f"\n{title + limit:60}{'best ms':>9}{'median ms':>11}{'best beside ibr_ref':>21}")
+    print(f"\n{title + limit:60}{'best ms':>9}{'median ms':>11}{'share of the last':>21}")
     for name, times in seconds.items():
         best, median = 1e3 * min(times), 1e3 * float(np.median(times))
         print(f"{name:60}{best:9.2f}{median:11.2f}{best / (1e3 * min(seconds['ibr_ref'])):20.2f}x")

@@ -106,14 +106,17 @@ def warp_error(image: Array, error: Array, grid: Array, target: Array, shift: fl
     shift = shift + 16.0 * UNIT * size  # of the positions themselves
     px, py = centres(size, size)
     attributes = [size * grid.reshape(-1, 2)[indices, k] for k in range(2)]
-    off = [2.0 * shift * corners.slope(a) + corners.plane_error(a, size) + 4.0 * UNIT * size for a in attributes]
+    slopes = [corners.slope(a) for a in attributes]
+    rounding = [corners.plane_error(a, size) + 4.0 * UNIT * size for a in attributes]
     result = np.zeros_like(image)
     for triangle in range(len(indices)):
         weights = corners.barycentrics(triangle, px, py)
-        near = (weights * np.abs(corners.area[triangle]) > -4.0 * shift * size).all(axis=0)
-        at = [np.tensordot(a[triangle], weights[:, near], axes=1) - 0.5 for a in attributes]
-        found = fetched_error(image, error, at[0], at[1], tuple(np.full(at[0].shape, o[triangle]) for o in off))
-        result[near] = np.maximum(result[near], found)
+        edges, band = weights * np.abs(corners.area[triangle]), 4.0 * shift * size
+        near = (edges > -band).all(axis=0)
+        moves = np.where((edges[:, near] > band).all(axis=0), shift, 2.0 * shift)  # a plane may be used beyond its edge
+        x, y = (np.tensordot(a[triangle], weights[:, near], axes=1) - 0.5 for a in attributes)
+        off = tuple(moves * slopes[k][triangle] + rounding[k][triangle] for k in range(2))
+        result[near] = np.maximum(result[near], fetched_error(image, error, x, y, off))
     return result
 
 

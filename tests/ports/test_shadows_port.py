@@ -278,6 +278,15 @@ def test_every_stage_agrees(port: Port, scene: str, name: str) -> None:
         assert largest["map"] < 2e-3, largest  # bounds that mean something
 
 
+def test_the_top_left_rule_where_edges_meet_pixel_centres(port: Port) -> None:
+    """Seen from above the box's edges run through centres: whoever covers them is the same, so the depth is."""
+    given = case("on the raster", "dissolve")
+    drawn = port.render(given.scene, given.params, maps=given.maps)
+    assert abs(given.frame.depth - drawn.depth).max() < 1e-5
+    columns = [(drawn.stages["raster.kind"] == 2).any(axis=axis).nonzero()[0] for axis in (0, 1)]
+    assert [(int(each[0]), int(each[-1])) for each in columns] == [(18, 22), (15, 19)]
+
+
 @pytest.mark.parametrize("content", ["mask", "depth"])
 @pytest.mark.parametrize("scene", SCENES)
 def test_nine_maps_agree(port: Port, scene: str, content: str) -> None:
