@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,21 +13,39 @@ _TOUCHES = 1e-9
 """Distance from a triangle, as a share of its size, that counts as on it: rounding of its corners."""
 
 
-def _corners(vertices: Array, triangles: NDArray[np.int32], point: Array) -> Array:
+class Solid(NamedTuple):
+    """A mesh in world space, and the box around it."""
+
+    vertices: Array
+    """(V, 3)."""
+    triangles: NDArray[np.int32]
+    """(T, 3)."""
+    low: Array
+    high: Array
+    """(3,) each, with room for rounding."""
+
+
+def solid(vertices: Array, triangles: NDArray[np.int32]) -> Solid:
+    """A mesh to ask `touched` and `contains` about."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    slack = _TOUCHES * float((high - low).max())
+    return Solid(vertices, triangles, low - slack, high + slack)
+
+
+def _in_box(mesh: Solid, point: Array) -> bool:
+    return bool(((mesh.low <= point) & (point <= mesh.high)).all())
+
+
+def _corners(mesh: Solid, point: Array) -> Array:
     """(3, T, 3) corners seen from the point."""
-    return np.moveaxis(vertices[triangles] - point, 1, 0)
+    return np.moveaxis(mesh.vertices[mesh.triangles] - point, 1, 0)
 
 
-def _outside_box(vertices: Array, point: Array) -> bool:
-    slack = _TOUCHES * float(np.ptp(vertices, axis=0).max())
-    return bool((point < vertices.min(axis=0) - slack).any() or (point > vertices.max(axis=0) + slack).any())
-
-
-def touched(vertices: Array, triangles: NDArray[np.int32], point: Array) -> int | None:
+def touched(mesh: Solid, point: Array) -> int | None:
     """Index of the first triangle that a point lies on, if any; triangles without an area have no points."""
-    if _outside_box(vertices, point):
+    if not _in_box(mesh, point):
         return None
-    a, b, c = _corners(vertices, triangles, point)
+    a, b, c = _corners(mesh, point)
     normal = np.cross(b - a, c - a)
     area = np.linalg.norm(normal, axis=1)
     size = np.sqrt(np.maximum(((b - a) ** 2).sum(axis=1), ((c - a) ** 2).sum(axis=1)))
@@ -35,14 +55,14 @@ def touched(vertices: Array, triangles: NDArray[np.int32], point: Array) -> int 
     return int(on[0]) if len(on) else None
 
 
-def contains(vertices: Array, triangles: NDArray[np.int32], point: Array) -> bool:
+def contains(mesh: Solid, point: Array) -> bool:
     """Whether a mesh surrounds a point: the solid angle that it covers there is more than half of the sphere.
 
     So a closed mesh contains its inside, however it is oriented; an open one what lies well behind its surface.
     """
-    if _outside_box(vertices, point):
+    if not _in_box(mesh, point):
         return False
-    a, b, c = _corners(vertices, triangles, point)
+    a, b, c = _corners(mesh, point)
     la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
     above = (a * np.cross(b, c)).sum(axis=1)
     below = la * lb * lc + (a * b).sum(axis=1) * lc + (b * c).sum(axis=1) * la + (c * a).sum(axis=1) * lb

@@ -17,7 +17,7 @@ from ibr_ref.scene import checks
 from ibr_ref.shadows import controls as placement
 from ibr_ref.shadows import maps
 from ibr_ref.shadows.inputs import CONTENTS, LARGEST_MAP, MOST_CONTROLS, Params, Scene
-from ibr_ref.shadows.samples import check_outside, samples_of, widened_range
+from ibr_ref.shadows.samples import caster_at, check_outside, samples_of, widened_range
 
 Array = NDArray[np.float64]
 
@@ -201,7 +201,7 @@ def prepare(scene: Scene, params: Params | None = None, *, controls: str | Array
     centre = scene.light.arrays[0]
     positions = maps.positions(low, high, np.array(scene.on_axes(centre)))
     for offset in positions.reshape(-1, 2):
-        check_outside("light.position", scene, offset, centre)
+        check_outside("light.position", caster_at(scene, offset), offset, centre)
     view = view_of(scene, params.map_size)
     texels = np.stack([np.stack([texels_at(view, offset, params) for offset in line]) for line in positions])
     return Maps(

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
-from ibr_ref.pipeline.sampling import fetch, footprint, lerp, nearest_index
+from ibr_ref.pipeline import memory
+from ibr_ref.pipeline.sampling import footprint, lerp, mix, nearest_index
 
 Array = NDArray[np.float64]
 
@@ -113,17 +114,41 @@ def _compare_four(texels, size, s, t, depth, quantized):
 
 
 @device
-def _look_up(texels, size, coord, i, caster, lookup):
-    """The shadow on a fragment, and the margin of its comparisons: infinite where nothing is compared."""
-    s, t = coord[0, i], coord[1, i]
-    if not _on_map(coord, i):
-        return 0.0, np.inf
-    if lookup.mode == MASK:
-        return (0.0 if caster else fetch(texels, size, size, None, s, t)), np.inf
-    depth = coord[2, i] - lookup.bias
-    if lookup.mode == DEPTH_PCF:
-        return _compare_four(texels, size, s, t, depth, lookup.quantized)
-    return _compare(depth, texels[nearest_index(s, t, size, size, None)], lookup.quantized)
+def _mask_row(texels, size, coord, hidden, shadow, margin):
+    """Bilinear fetches of the silhouette; in two loops, as the gathers keep the first one from being vectorized."""
+    count = len(shadow)
+    index, fraction = np.empty((4, count), np.uint32), np.empty((2, count))
+    for i in range(count):
+        i00, i10, i01, i11, fx, fy = footprint(coord[0, i], coord[1, i], size, size, None)
+        index[0, i], index[1, i], index[2, i], index[3, i] = i00, i10, i01, i11
+        fraction[0, i], fraction[1, i] = fx, fy
+    for i in range(count):
+        fetched = mix(texels, index[0, i], index[1, i], index[2, i], index[3, i], fraction[0, i], fraction[1, i])
+        shadow[i] = 0.0 if hidden[i] else fetched
+        margin[i] = np.inf
+
+
+@device
+def _depth_row(texels, size, coord, hidden, lookup, shadow, margin):
+    """Comparisons of depths: with the nearest texel, or with four."""
+    for i in range(len(shadow)):
+        shadow[i], margin[i] = 0.0, np.inf
+        if hidden[i]:
+            continue
+        s, t, depth = coord[0, i], coord[1, i], coord[2, i] - lookup.bias
+        if lookup.mode == DEPTH_PCF:
+            shadow[i], margin[i] = _compare_four(texels, size, s, t, depth, lookup.quantized)
+        else:
+            nearest = texels[nearest_index(s, t, size, size, None)]
+            shadow[i], margin[i] = _compare(depth, nearest, lookup.quantized)
+
+
+@device
+def _hide_row(triangle, coord, lookup, hidden):
+    """What is lit whatever the map says: no surface, beside the map, behind the light, in a mask the caster itself."""
+    last = lookup.caster if lookup.mode == MASK else 2147483647
+    for i in range(len(triangle)):
+        hidden[i] = (triangle[i] < 0) | (triangle[i] >= last) | (not _on_map(coord, i))
 
 
 @device
@@ -133,45 +158,35 @@ def _edge_distance(x):
 
 
 @device
-def _keep(coord, i, size, margin, row, column, result):
-    """The arrays that are kept with a fragment's shadow."""
-    for k in range(3):
-        result.coord[row, column, k] = coord[k, i]
-    nearest = min(_edge_distance(coord[0, i] * size), _edge_distance(coord[1, i] * size))
-    result.margin[row, column] = margin
-    result.texel_margin[row, column] = nearest if coord[3, i] > 0.0 else np.inf
+def _keep_row(triangle, coord, size, margins, row, result):
+    """The arrays that are kept with the shadows."""
+    for i in range(len(triangle)):
+        seen = triangle[i] >= 0
+        for k in range(3):
+            result.coord[row, i, k] = coord[k, i] if seen else 0.0
+        nearest = min(_edge_distance(coord[0, i] * size), _edge_distance(coord[1, i] * size))
+        result.margin[row, i] = margins[i]
+        result.texel_margin[row, i] = nearest if seen and coord[3, i] > 0.0 else np.inf
 
 
 @device
-def _keep_nothing(row, column, result):
-    """Where no surface is."""
-    for k in range(3):
-        result.coord[row, column, k] = 0.0
-    result.margin[row, column] = np.inf
-    result.texel_margin[row, column] = np.inf
-
-
-@device
-def _project_row(triangle, varyings, view, clip, texels, size, lookup, row, result):
-    columns = triangle.shape[1]
-    coord = np.empty((4, columns))
-    _locate_row(varyings[row], view, clip, coord)
-    for i in range(columns):
-        shadow, margin = 0.0, np.inf
-        seen = triangle[row, i] >= 0
-        if seen:
-            shadow, margin = _look_up(texels, size, coord, i, triangle[row, i] >= lookup.caster, lookup)
-        result.shadow[row, i] = shadow
-        if lookup.keep and seen:
-            _keep(coord, i, size, margin, row, i, result)
-        elif lookup.keep:
-            _keep_nothing(row, i, result)
+def _project_row(triangle, world, view, clip, texels, size, lookup, row, result):
+    columns = len(triangle)
+    coord, margin, hidden = np.empty((4, columns)), np.empty(columns), np.empty(columns, np.bool_)
+    _locate_row(world, view, clip, coord)
+    _hide_row(triangle, coord, lookup, hidden)
+    if lookup.mode == MASK:
+        _mask_row(texels, size, coord, hidden, result.shadow[row], margin)
+    else:
+        _depth_row(texels, size, coord, hidden, lookup, result.shadow[row], margin)
+    if lookup.keep:
+        _keep_row(triangle, coord, size, margin, row, result)
 
 
 @kernel
 def _project(triangle, varyings, view, clip, texels, size, lookup, result):
     for row in prange(triangle.shape[0]):
-        _project_row(triangle, varyings, view, clip, texels, size, lookup, row, result)
+        _project_row(triangle[row], varyings[row], view, clip, texels, size, lookup, row, result)
 
 
 def project(
@@ -188,7 +203,8 @@ def project(
     """
     height, width = triangle.shape
     kept = (height, width) if lookup.keep else (0, 0)
-    result = Projected(np.empty((*kept, 3)), np.empty((height, width)), np.empty(kept), np.empty(kept))
+    shapes = ((*kept, 3), (height, width), kept, kept)
+    result = Projected(*memory.arrays([(np.float64, shape) for shape in shapes]))
     size = float(len(image))
     _project(triangle, varyings, view_from_world, clip_from_view, image.reshape(-1), size, lookup, result)
     return result

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
+from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.lighting import unit
 from ibr_ref.pipeline.merge import blend_add
 from ibr_ref.shadows.surface import Surface
@@ -31,10 +32,12 @@ def _brightness(normal, eye, light, ambient, shadow, x, y, z):
 
 
 @device
-def _resolve_row(surface, shadow, eye, light, ambient, row, color):
+def _resolve_row(surface, shadow, eye, light, ambient, background, row, color):
     for column in range(shadow.shape[1]):
         t = surface.triangle[row, column]
         if t < 0:
+            for k in range(3):
+                color[row, column, k] = background[k]
             continue
         p = surface.varyings[row, column]
         bright = _brightness(surface.normals[t], eye, light, ambient, shadow[row, column], p[0], p[1], p[2])
@@ -44,14 +47,13 @@ def _resolve_row(surface, shadow, eye, light, ambient, row, color):
 
 
 @kernel
-def _resolve(surface, shadow, eye, light, ambient, color):
+def _resolve(surface, shadow, eye, light, ambient, background, color):
     for row in prange(shadow.shape[0]):
-        _resolve_row(surface, shadow, eye, light, ambient, row, color)
+        _resolve_row(surface, shadow, eye, light, ambient, background, row, color)
 
 
 def resolve(surface: Surface, shadow: Array, eye: Array, light: Array, ambient: float, background: Array) -> Array:
     """(H, W, 3) the picture: surface colour times brightness, for the eye (4,) and the light's centre (3,)."""
-    color = np.empty((*shadow.shape, 3))
-    color[:] = background
-    _resolve(surface, shadow, eye, light, ambient, color)
+    (color,) = memory.arrays([(np.float64, (*shadow.shape, 3))])
+    _resolve(surface, shadow, eye, light, ambient, background, color)
     return color

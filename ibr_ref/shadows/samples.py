@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.scene import checks
-from ibr_ref.shadows.containment import contains, touched
+from ibr_ref.shadows.containment import Solid, contains, solid, touched
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.vertex import place
 
@@ -42,6 +42,8 @@ def samples_of(scene: Scene, params: Params) -> list[Sample]:
     Raises ValueError for a position outside the light's plane, inside the caster, or on a triangle.
     """
     centre = scene.light.arrays[0]
+    receivers = [solid(np.asarray(mesh.vertices), np.asarray(mesh.triangles)) for mesh in scene.receivers]
+    caster = caster_at(scene, np.asarray(scene.offset))
     samples = []
     for i, position in enumerate(_positions(scene, params)):
         field = f"light_samples[{i}]" if isinstance(params.light_samples, np.ndarray) else "light.position"
@@ -49,24 +51,24 @@ def samples_of(scene: Scene, params: Params) -> list[Sample]:
             raise checks.reject(
                 field, position.tolist(), f"a point in the plane of offset_axes through {tuple(centre.tolist())}"
             )
-        _check_place(field, scene, position)
+        for k, receiver in enumerate(receivers):
+            triangle = touched(receiver, position)
+            if triangle is not None:
+                where = f"a point off receivers[{k}] (it is on triangle {triangle})"
+                raise checks.reject(field, position.tolist(), where)
+        check_outside(field, caster, np.asarray(scene.offset), position)
         samples.append(Sample(position, np.array(scene.on_axes(position - centre))))
     return samples
 
 
-def _check_place(field: str, scene: Scene, position: Array) -> None:
-    for i, receiver in enumerate(scene.receivers):
-        triangle = touched(np.asarray(receiver.vertices), np.asarray(receiver.triangles), position)
-        if triangle is not None:
-            raise checks.reject(field, position.tolist(), f"a point off receivers[{i}] (it is on triangle {triangle})")
-    check_outside(field, scene, np.asarray(scene.offset), position)
+def caster_at(scene: Scene, offset: Array) -> Solid:
+    """The caster where it stands at an offset."""
+    return solid(place(np.asarray(scene.caster.vertices), scene.axes, offset), np.asarray(scene.caster.triangles))
 
 
-def check_outside(field: str, scene: Scene, offset: Array, position: Array) -> None:
-    """Raise ValueError for a light inside the caster, or on its surface, where that stands at an offset."""
-    triangles = np.asarray(scene.caster.triangles)
-    vertices = place(np.asarray(scene.caster.vertices), scene.axes, offset)
-    if contains(vertices, triangles, position) or touched(vertices, triangles, position) is not None:
+def check_outside(field: str, caster: Solid, offset: Array, position: Array) -> None:
+    """Raise ValueError for a light inside the caster at an offset, or on its surface."""
+    if contains(caster, position) or touched(caster, position) is not None:
         raise checks.reject(
             field, position.tolist(), f"a point outside the caster (at offset {tuple(offset.tolist())})"
         )

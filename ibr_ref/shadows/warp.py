@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
+from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.sampling import footprint, lerp
 from ibr_ref.pipeline.triangles import SUBPIXELS, columns_in_row, edges_in_row
 
@@ -215,7 +216,7 @@ def warp_stage(
     size = texels.shape[2]
     (i, j), (s, t) = cell.tolist(), fraction.tolist()
     row_grids, grid = grids_at(controls, cell, fraction)
-    rows, image = np.empty((2, size, size)), np.empty((size, size))
+    rows, image = memory.arrays([(np.float64, (2, size, size)), (np.float64, (size, size))])
     for k in range(2):
         pair = [Image(texels[j + k, i + n].reshape(-1), levels, controls[j + k, i + n]) for n in range(2)]
         _warp_pair(pair, s, row_grids[k], nearest, outside, rows[k])
