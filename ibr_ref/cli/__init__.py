@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from ibr_ref.cli import bench, demo, displacement, splatting
+from ibr_ref.cli import bench, demo, displacement, shadows, splatting
 
 app = typer.Typer(
     name="ibr-ref",
@@ -24,6 +24,7 @@ app = typer.Typer(
 render_app = typer.Typer(no_args_is_help=True, help="Render your own input with one of the methods.")
 render_app.command("displacement", epilog=displacement.EXAMPLES)(displacement.command)
 render_app.command("splatting", epilog=splatting.EXAMPLES)(splatting.command)
+render_app.command("shadows", epilog=shadows.EXAMPLES)(shadows.command)
 app.add_typer(render_app, name="render")
 app.command("demo", epilog=demo.EXAMPLES)(demo.command)
 app.command("bench", epilog=bench.EXAMPLES)(bench.command)

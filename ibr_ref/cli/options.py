@@ -29,6 +29,12 @@ def pair(text: str) -> tuple[float, float]:
     return w, h
 
 
+def place(text: str) -> tuple[float, float]:
+    """X,Y of an object."""
+    x, y = _numbers(text, 2, "0.3,-0.2")
+    return x, y
+
+
 def law(text: str) -> tuple[float, float, float, float]:
     """A,B,C,D of a splat law."""
     a, b, c, d = _numbers(text, 4, "1,0,0.002,0.7")

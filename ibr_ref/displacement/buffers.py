@@ -70,8 +70,6 @@ class Settings(NamedTuple):
     shadow_bias: float
     polygon_depth: bool
     """depth="polygon"."""
-    keep: bool
-    """All stage arrays are wanted, not the picture alone."""
 
 
 class Fragments(NamedTuple):

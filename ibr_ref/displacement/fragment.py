@@ -86,7 +86,7 @@ def rasterize(triangles, faces, width, first_row, last_row, with_depth, fragment
 
 
 @device
-def search(repeat, fragments, count, constants, settings, maps, hits):
+def search(repeat, keep, fragments, count, constants, settings, maps, hits):
     """Stage march: the hits of all fragments, by the method's search."""
     texels, columns, rows = maps.height
     if settings.method == TEXTURE:
@@ -106,9 +106,9 @@ def search(repeat, fragments, count, constants, settings, maps, hits):
     linear, index = hits.linear_index, hits.hit_index
     linear_search(repeat, rays, count, texels, columns, rows, maps.maxima, settings, linear)
     binary_search(repeat, rays, count, texels, columns, rows, settings, linear, index)
-    if settings.keep or maps.facade.texels.size > 0:
+    if keep is not None or maps.facade.texels.size > 0:
         heights_before(repeat, rays, count, texels, columns, rows, settings, linear, hits.height_before)
-    if settings.keep:
+    if keep is not None:
         if settings.bounded:
             linear_border(rays, count, settings, linear, hits.domain_margin)
         binary_margins(
@@ -119,7 +119,7 @@ def search(repeat, fragments, count, constants, settings, maps, hits):
 
 
 @device
-def shade(repeat, hits, count, constants, settings, maps, shades):
+def shade(repeat, keep, hits, count, constants, settings, maps, shades):
     """Stage shade: colours of all hits."""
     texels, columns, rows = maps.height
     has_normals, has_facade = maps.normal.texels.size > 0, maps.facade.texels.size > 0
@@ -136,30 +136,30 @@ def shade(repeat, hits, count, constants, settings, maps, shades):
         facades(hits, count, maps.facade.texels, maps.facade.columns, maps.facade.rows, constants, shades)
     if settings.shadow_steps > 0:
         floor = -1.0 if settings.method == RELIEF else 0.0
-        self_shadow(repeat, hits, count, texels, columns, rows, constants.light, floor, settings, shades)
+        self_shadow(repeat, keep, hits, count, texels, columns, rows, constants.light, floor, settings, shades)
     light_hits(hits, count, constants, shades)
 
 
 @device
-def _draw_band(repeat, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target):
+def _draw_band(repeat, keep, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target):
     count = _count(triangles, width, first_row, last_row)
     if count == 0:
         return
     fragments, hits, shades = fragments_for(count), hits_for(count), shades_for(count)
     verdicts = np.empty(count, np.int8)
     rasterize(triangles, faces, width, first_row, last_row, settings.polygon_depth, fragments)
-    search(repeat, fragments, count, constants, settings, maps, hits)
+    search(repeat, keep, fragments, count, constants, settings, maps, hits)
     project_hits(fragments, count, constants, settings, hits)
     if settings.method == PROTRUDED or settings.method == EXACT:
         mark_steep(count, settings, hits)
-    if settings.keep:
+    if keep is not None:
         shown = noted_depth_test(fragments, hits, count, target, verdicts)
     else:
         shown = depth_test(fragments, hits, count, target, verdicts)
-    if shown > 0 or settings.keep:
-        shade(repeat, hits, count, constants, settings, maps, shades)
+    if shown > 0 or keep is not None:
+        shade(repeat, keep, hits, count, constants, settings, maps, shades)
     write_color(fragments, shades, count, verdicts, target)
-    if settings.keep:
+    if keep is not None:
         write_stages(fragments, hits, count, patch_id, verdicts, target)
         write_shades(fragments, hits, shades, count, verdicts, target)
 
@@ -167,6 +167,7 @@ def _draw_band(repeat, triangles, faces, constants, settings, maps, patch_id, wi
 @kernel
 def draw(
     repeat,
+    keep,
     triangles,
     faces,
     constants,
@@ -184,7 +185,8 @@ def draw(
 ):
     """Draw one polygon into the target: patch_id 0 clears it first, band by band; others come over what is there.
 
-    repeat: None (clamp) or True, the wrap mode of its maps; it is a type to the compiler. faces: the face number of
+    repeat: None (clamp) or True, the wrap mode of its maps. keep: None or True, all stage arrays are wanted, not the
+    picture alone. Both are types to the compiler: what they rule out is not even compiled. faces: the face number of
     each quad. heights, colors, normals, facade: `Map`s (one by one: Numba's parallel loops take no nested tuples). The
     bands are taken in an order that gives every thread an even sample of the picture.
     """
@@ -199,4 +201,6 @@ def draw(
         maps = Maps(heights, colors, normals, facade, maxima)
         if patch_id == 0:
             clear(target, background, first_row * width, last_row * width)
-        _draw_band(repeat, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target)
+        _draw_band(
+            repeat, keep, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target
+        )

@@ -1,9 +1,9 @@
 """The search of protruded displacement mapping: linear, then binary (section 3.1), then steep or not (section 4.2).
 
 All tests are on the lattice t = k/K, K = N 2^M. Fragments run in waves: each step of the search runs over all LANES in
-an inner loop, with masks instead of branches, as a GPU does; LLVM turns those loops into SIMD gathers. It only does so
-where the lanes' arrays are allocated in the same function: it must see that stores to them cannot change the texture. Where
-to sample, the fetch, and what follows from it are loops of their own: one loop for all takes half as long again.
+an inner loop, with masks instead of branches, as a GPU does; LLVM turns those loops into SIMD gathers (`pipeline.waves`
+says when). Where to sample, the fetch, and what follows from it are loops of their own: one loop for all takes half as
+long again.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.displacement.buffers import load_rays, over_polygon
-from ibr_ref.displacement.maxima import highest, level_for
+from ibr_ref.displacement.maxima import highest_in, level_for
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch, lerp
 from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, smallest, store, store_indices
@@ -72,7 +72,7 @@ def clearances(repeat, maxima, settings, bounds, step, clear):
         t = np.float64(step + i) * stride / total
         u_low, u_high = lerp(u_low0, u_low1, t), lerp(u_high0, u_high1, t)
         v_low, v_high = lerp(v_low0, v_low1, t), lerp(v_high0, v_high1, t)
-        heights = highest(values, everywhere, grid, u_low, u_high, v_low, v_high) if repeat is None else everywhere
+        heights = highest_in(values, everywhere, grid, u_low, u_high, v_low, v_high) if repeat is None else everywhere
         beside = (u_high < -_BORDER_SLACK) | (u_low > 1.0 + _BORDER_SLACK)
         beside |= (v_high < -_BORDER_SLACK) | (v_low > 1.0 + _BORDER_SLACK)
         above[i] = np.inf if beside & bounded else lerp(h_low0, h_low1, t) - heights

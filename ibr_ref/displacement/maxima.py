@@ -106,7 +106,12 @@ def level_for(maxima, width, height):
 
 
 @device
-def highest(values, everywhere, grid, u_low, u_high, v_low, v_high):
+def _index(cell):
+    return np.uint32(np.int32(cell))
+
+
+@device
+def highest_in(values, everywhere, grid, u_low, u_high, v_low, v_high):
     """An upper bound of every fetch with u in [u_low, u_high] and v in [v_low, v_high] (clamped), from four cells."""
     offset, columns, across, along, last_column, last_row, slack = grid
     left = clamped(np.floor(u_low * across - slack), 0.0, last_column)
@@ -120,5 +125,7 @@ def highest(values, everywhere, grid, u_low, u_high, v_low, v_high):
 
 
 @device
-def _index(cell):
-    return np.uint32(np.int32(cell))
+def highest(maxima, u_low, u_high, v_low, v_high):
+    """The same for a single range: its own level."""
+    grid = level_for(maxima, u_high - u_low, v_high - v_low)
+    return highest_in(maxima.values, maxima.everywhere, grid, u_low, u_high, v_low, v_high)

@@ -40,9 +40,10 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
         clipped = clip_triangles(quads.clip, quads.patch, quads.triangles, camera.width, camera.height)
         triangles = set_up(clipped, camera.width, camera.height)
         repeat = True if polygon.domain == "repeat" else None
-        settings = _settings(params, polygon, stages)
+        keep = True if stages else None
+        settings = _settings(params, polygon)
         draw(
-            repeat, triangles, quads.numbers, constants[patch_id], settings, *_maps(polygon), patch_id,
+            repeat, keep, triangles, quads.numbers, constants[patch_id], settings, *_maps(polygon), patch_id,
             camera.width, camera.height, background, target,
         )  # fmt: skip
     size = (camera.height, camera.width)
@@ -53,7 +54,7 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
     )
 
 
-def _settings(params: Params, polygon: BasePolygon, keep: bool) -> Settings:
+def _settings(params: Params, polygon: BasePolygon) -> Settings:
     volume = params.interval == "volume" and params.drawn_faces == "auxiliary"
     return Settings(
         method=inputs.METHODS.index(params.method),
@@ -65,7 +66,6 @@ def _settings(params: Params, polygon: BasePolygon, keep: bool) -> Settings:
         shadow_steps=params.shadow_steps,
         shadow_bias=params.shadow_bias,
         polygon_depth=params.depth == "polygon",
-        keep=keep,
     )
 
 

@@ -121,7 +121,7 @@ def project_hits(fragments, count, constants, settings, hits):
     row_z = (clip[2, 0], clip[2, 1], clip[2, 2], clip[2, 3])
     row_w = (clip[3, 0], clip[3, 1], clip[3, 2], clip[3, 3])
     u, v, h, depth = lanes(), lanes(), lanes(), lanes()
-    index, linear, before = lanes(), lanes(), lanes()
+    index, linear, before, steep = lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
         load(hits.u, first, u)
         load(hits.v, first, v)
@@ -129,6 +129,7 @@ def project_hits(fragments, count, constants, settings, hits):
         load_indices(hits.hit_index, first, index)
         load_indices(hits.linear_index, first, linear)
         load(hits.height_before, first, before)
+        load(hits.steep_margin, first, steep)
         for lane in range(LANES):
             p_u, p_v, p_h = u[lane], v[lane], h[lane]
             x = world[0][0] + p_u * world[0][1] + p_v * world[0][2] + p_h * world[0][3]
@@ -144,6 +145,7 @@ def project_hits(fragments, count, constants, settings, hits):
             index[lane] = index[lane] if kept else -1.0
             linear[lane] = linear[lane] if kept else -1.0
             before[lane] = before[lane] if kept else 0.0
+            steep[lane] = steep[lane] if kept else np.nan
             u[lane] = p_u if kept else np.nan
             v[lane] = p_v if kept else np.nan
             h[lane] = p_h if kept else np.nan
@@ -154,11 +156,10 @@ def project_hits(fragments, count, constants, settings, hits):
         store_indices(index, hits.hit_index, first)
         store_indices(linear, hits.linear_index, first)
         store(before, hits.height_before, first)
+        if settings.polygon_depth:
+            load(fragments.depth, first, depth)
         store(depth, hits.depth, first)
-    if settings.keep or settings.polygon_depth:
-        for i in range(count):
-            hits.steep_margin[i] = hits.steep_margin[i] if hits.hit_index[i] >= 0 else np.nan
-            hits.depth[i] = fragments.depth[i] if settings.polygon_depth else hits.depth[i]
+        store(steep, hits.steep_margin, first)
 
 
 SHOWN, NOTED, HIDDEN = 2, 1, 0

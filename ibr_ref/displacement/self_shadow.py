@@ -31,7 +31,7 @@ def _stretch(repeat, u, v, h, floor, towards_u, towards_v, towards_h, w):
 
 
 @device
-def self_shadow(repeat, hits, count, texels, columns, rows, light, floor, settings, shades):
+def self_shadow(repeat, keep, hits, count, texels, columns, rows, light, floor, settings, shades):
     """`lit` and its margin for each kept hit. floor: the solid lies in [floor, floor + 1], -1 for relief mapping."""
     steps = settings.shadow_steps
     for i in range(count):
@@ -55,5 +55,5 @@ def self_shadow(repeat, hits, count, texels, columns, rows, light, floor, settin
             shades.lit_margin[i] = min(shades.lit_margin[i], abs(level - height))
             if level < height:
                 shades.lit[i] = False
-                if not settings.keep:
+                if keep is None:
                     break

@@ -58,6 +58,12 @@ def render(
     return Frame(color=color, depth=surface.depth, stages=kept)
 
 
+def shadow_maps(scene: Scene, params: Params | None = None, *, maps: Maps | MapGrid | None = None) -> Array:
+    """The maps (N, S, S) that `render` projects, one for each light sample; maps as there."""
+    params = Params() if params is None else params
+    return np.stack(_images(scene, params, samples_of(scene, params), maps, stages=False)[0])
+
+
 # --- The maps that are projected -------------------------------------------------------------------------------------
 
 

@@ -5,31 +5,14 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from ibr_ref import cli
-
-Run = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
-    """Call `ibr-ref` with arguments: exit code, standard output, standard error."""
-
-    def call(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["ibr-ref", *map(str, arguments)])
-        with pytest.raises(SystemExit) as exit_:
-            cli.main()
-        out, err = capfd.readouterr()
-        code = exit_.value.code
-        return (0 if code is None else int(code)), out, err
-
-    return call
+from tests.cli.conftest import Run
+from tests.cli.errors import assert_one_line
 
 
 @pytest.fixture
@@ -51,16 +34,6 @@ def arguments(maps: dict[str, Path], out: Path, *more: object) -> tuple[object, 
     )
 
 
-def assert_one_line(result: tuple[int, str, str], *words: str) -> None:
-    code, out, err = result
-    assert code == 2, (code, out, err)
-    assert err.startswith("ibr-ref: ")
-    assert err.count("\n") == 1
-    assert "Traceback" not in err
-    for word in words:
-        assert word in err, err
-
-
 def test_help_does_not_import_numba() -> None:
     code = "import sys; from ibr_ref import cli; sys.argv = ['ibr-ref', '--help']\n"
     code += "try: cli.main()\nexcept SystemExit: pass\n"
@@ -72,7 +45,7 @@ def test_help_does_not_import_numba() -> None:
 
 @pytest.mark.parametrize(
     "command",
-    [(), ("render",), ("demo",), ("bench",), ("render", "displacement")],
+    [(), ("render",), ("demo",), ("bench",), ("render", "displacement"), ("render", "splatting")],
     ids=lambda c: " ".join(c) or "ibr-ref",
 )
 def test_every_command_has_help(run: Run, command: tuple[str, ...]) -> None:
@@ -83,7 +56,7 @@ def test_every_command_has_help(run: Run, command: tuple[str, ...]) -> None:
 
 
 def test_examples_are_in_the_help(run: Run) -> None:
-    for command in (("demo",), ("bench",), ("render", "displacement")):
+    for command in (("demo",), ("bench",), ("render", "displacement"), ("render", "splatting")):
         assert "ibr-ref " + " ".join(command) in run(*command, "--help")[1]
 
 
@@ -250,10 +223,10 @@ def test_an_error_in_a_pipe_is_one_line_too(tmp_path: Path) -> None:
 
 
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ibr_ref.cli import bench
+    from ibr_ref.cli.bench import displacement
 
-    scenes = bench._scenes()
-    monkeypatch.setattr(bench, "_scenes", lambda: scenes[:1])
+    scenes = displacement._scenes()
+    monkeypatch.setattr(displacement, "_scenes", lambda: scenes[:1])
     code, out, err = run("bench", "displacement", "--repeat", "1", "--json", tmp_path / "times.json")
     assert (code, err) == (0, "")
     assert "6600GT" in out
@@ -263,10 +236,20 @@ def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_demo_makes_all_pictures(run: Run, tmp_path: Path) -> None:
+    from ibr_ref.cli import demo
+
     code, out, err = run("demo", "--out", tmp_path / "demo")
     assert (code, err) == (0, "")
     names = {path.stem for path in (tmp_path / "demo").iterdir()}
     assert names >= {f"figure_6{letter}" for letter in "abcdef"} | {"figure_15e", "city_shadows", "contact_sheet"}
+    assert names >= {
+        f"splat_figure_{figure}" for figure in ("1a", "1b", "3a", "3b", "3c", "5a", "5b", "6a", "6b", "6c")
+    }
+    assert len(names) == 1 + sum(method.PICTURES for method in demo.METHODS)
+    for path in (tmp_path / "demo").glob("*figure*.png"):
+        picture = imageio.imread(path)
+        assert picture.shape == (480, 640, 3), path.name
+        assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 20, f"{path.name} is blank"
     assert "ms" in out
 
 

@@ -1,8 +1,10 @@
 """Whole frames of protruded displacement mapping: the GLSL port on this machine's OpenGL beside the package.
 
-Run from the repository's root: `python -m tests.ports.bench_displacement`. The contenders take turns, frame by frame, so
-that all of them see the same state of the machine. A GL frame is submission and glFinish, without read-back, into an RGBA8
-and a 32-bit float depth attachment; a frame of the package is a call of `render` with everything that it returns.
+Run from the repository's root: `python -m tests.ports.bench_displacement`. The contenders take turns, so that all of them
+see the same state of the machine, in blocks of consecutive frames, as an application draws them: the first frames of a
+block, which wake the contender's threads and fill the caches after the other, do not count. A GL frame is submission and
+glFinish, without read-back, into an RGBA8 and a 32-bit float depth attachment; a frame of the package is a call of `render`
+with everything that it returns.
 """
 
 from __future__ import annotations
@@ -17,7 +19,10 @@ import ibr_ref
 from ibr_ref import displacement, models
 from tests.ports.displacement import Port
 
-FRAMES = 20
+BLOCKS = 4
+WARM_UP, FRAMES = 2, 5
+"""Frames of a block that do not count, and then those that do."""
+
 LINEAR_STEPS = (10, 50)
 BINARY_STEPS = 6
 VISIBLE = 2 / 255
@@ -30,7 +35,8 @@ def main() -> None:
     scene = box_scene()
     print(f"GL_RENDERER: {port.device.renderer}; {os.cpu_count()} CPUs")
     print(
-        f"{scene.camera.width} x {scene.camera.height}, box(), M = {BINARY_STEPS}, {FRAMES} frames each, milliseconds\n"
+        f"{scene.camera.width} x {scene.camera.height}, box(), M = {BINARY_STEPS}, milliseconds of "
+        f"{BLOCKS * FRAMES} frames each, in {BLOCKS} blocks in turn\n"
     )
     print(f"{'':28}{'N':>4}{'best':>9}{'median':>9}")
     notes = [line for steps in LINEAR_STEPS for line in measure(port, scene, steps)]
@@ -78,12 +84,13 @@ def measure(port: Port, scene: displacement.Scene, steps: int) -> list[str]:
 
 
 def alternate(contenders: dict[str, Callable[[], float]]) -> dict[str, list[float]]:
-    """Seconds of `FRAMES` frames each, taken in turn after two rounds that do not count (compilation, first touch)."""
-    for _ in range(2):
-        for contender in contenders.values():
-            contender()
-    rounds = [{name: contender() for name, contender in contenders.items()} for _ in range(FRAMES)]
-    return {name: [each[name] for each in rounds] for name in contenders}
+    """Seconds of `BLOCKS` times `FRAMES` frames each; a block that does not count comes first (compilation)."""
+    times: dict[str, list[float]] = {name: [] for name in contenders}
+    for block in range(1 + BLOCKS):
+        for name, contender in contenders.items():
+            seconds = [contender() for _ in range(WARM_UP + FRAMES)]
+            times[name] += seconds[WARM_UP:] if block > 0 else []
+    return times
 
 
 def render_seconds(scene: displacement.Scene, params: displacement.Params, *, stages: bool) -> float:

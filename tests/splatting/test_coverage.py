@@ -53,6 +53,7 @@ def test_a_picture_n_times_as_large_has_holes_of_all_but_one_in_n_squared(n: int
     assert found.holes.sum() == inside
     assert found.hole_share == inside / (n * n * 11 * 8)
     assert found.coverage == 1 / n**2
+    assert found.mean_overdraw == 1.0, "of the covered pixels"
     closed = measured([image], view, alpha=float(n))
     assert closed.hole_share == 0.0
     assert closed.mean_overdraw == 1.0

@@ -69,6 +69,21 @@ def test_a_law_is_positive_and_stays_below_the_limit(seed: int, tau: float, leas
     assert law.width(d).max() <= (least + more) * (1 + 1e-6)
 
 
+def test_needs_beyond_the_limits_count_as_the_limits() -> None:
+    """A point that needs less than `min_width` has it anyway, and none gets more than `max_width`."""
+    d = distances(100, 5)
+    widths = 40.0 * noise(100, seed=6)
+    assert fit(d, widths, 0.7, 8.0, 30.0) == fit(d, np.clip(widths, 8.0, 30.0), 0.7, 8.0, 30.0)
+    assert fit(d, widths, 0.7, 8.0, 30.0) != fit(d, widths, 0.7, 1e-3, 1e3)
+
+
+def test_no_law_is_wider_than_the_limit_where_nobody_needs_it() -> None:
+    """One point at d = 2 needs the most: falling with d^2, as the far point would have it, were 120 at d = 1."""
+    d = np.array([1.0, 2.0, 3.0])
+    law = fit(d, np.array([1.0, 30.0, 1.0]), 1.0, 0.5, 30.0)
+    np.testing.assert_allclose(law.width(d), 30.0, rtol=1e-6)
+
+
 def test_a_larger_tau_makes_no_narrower_splats_on_average() -> None:
     d = distances(400, 3)
     widths = SplatLaw(1.0, *LAWS[0]).width(d) * (0.5 + noise(400, seed=4))

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ibr_ref.cli.bench import displacement, splatting, splatting_quality
+from ibr_ref.cli.bench import displacement, shadows, splatting, splatting_quality
 
 EXAMPLES = """
 Examples:
@@ -27,6 +27,7 @@ class Method(StrEnum):
     all = "all"
     displacement = "displacement"
     splatting = "splatting"
+    shadows = "shadows"
 
 
 def command(
@@ -57,6 +58,9 @@ def command(
         if msr is not None:
             figures["splatting_quality"] = splatting_quality.views(msr)
             console.print(splatting_quality.table(figures["splatting_quality"]))
+    if method in (Method.all, Method.shadows):
+        figures["shadows"] = shadows.times(repeat)
+        console.print(shadows.table(figures["shadows"]))
     if json is not None:
         _write(json, figures)
 

@@ -1,0 +1,55 @@
+"""What `ibr-ref render shadows --report` says of a frame, and what the benches measure of warped shadows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ibr_ref.io import Frame
+    from ibr_ref.shadows import Maps, Params, Scene
+
+
+def iou(ours: NDArray[np.float64], theirs: NDArray[np.float64]) -> float:
+    """Intersection over union of where two arrays are >= 0.5; 1 where neither is anywhere."""
+    a, b = ours >= 0.5, theirs >= 0.5
+    union = int((a | b).sum())
+    return float((a & b).sum()) / union if union else 1.0
+
+
+def soft_difference(ours: NDArray[np.float64], theirs: NDArray[np.float64]) -> float:
+    """Mean absolute difference of two shadows (H, W) where either is > 0; 0 where neither is."""
+    import numpy as np
+
+    where = (ours > 0.0) | (theirs > 0.0)
+    return float(np.abs(ours - theirs)[where].mean()) if where.any() else 0.0
+
+
+def report_lines(scene: Scene, params: Params, frame: Frame, maps: Maps | None) -> list[str]:
+    """A frame with stages beside the one whose maps are rendered for every sample."""
+    import numpy as np
+
+    from ibr_ref import shadows
+
+    lines = []
+    if maps is not None:
+        lines.append(f"maps and controls: {maps.nbytes:,} bytes")
+    truth = shadows.render(scene, replace(params, method="direct")).stages
+    size = params.map_size
+    found = [
+        iou(a, b)
+        for a, b in zip(
+            np.reshape(frame.stages["warp.image"], (-1, size, size)),
+            np.reshape(truth["warp.image"], (-1, size, size)),
+            strict=True,
+        )
+    ]
+    ours, theirs = frame.stages["accumulate.shadow"], truth["accumulate.shadow"]
+    lines.append(f"maps against rendered ones: IoU {np.mean(found):.3f} in the mean, {min(found):.3f} at worst")
+    lines.append(
+        f"shadow in the picture: IoU {iou(ours, theirs):.3f}, mean difference {soft_difference(ours, theirs):.4f}"
+    )
+    return lines

@@ -1,0 +1,174 @@
+"""`ibr-ref render shadows`."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ibr_ref.cli import options
+from ibr_ref.cli.progress import progress
+
+if TYPE_CHECKING:
+    from ibr_ref.cli.progress import Step
+    from ibr_ref.scene import Mesh
+    from ibr_ref.shadows import Maps, Params, Scene
+
+EXAMPLES = """
+Examples:
+
+    ibr-ref render shadows --out horse.png
+
+    ibr-ref render shadows --caster cow.obj --samples 9 --offset 0.3,-0.2 --out cow.png
+
+    ibr-ref render shadows --caster cow.obj --maps cow.npz --samples 9 --report --out cow.png
+"""
+
+
+class Method(StrEnum):
+    """Where the shadow map comes from."""
+
+    warp = "warp"
+    direct = "direct"
+    grid = "grid"
+
+
+class Policy(StrEnum):
+    """How the maps around the object's place are warped."""
+
+    dissolve = "dissolve"
+    nearest = "nearest"
+
+
+class Content(StrEnum):
+    """What a map holds."""
+
+    mask = "mask"
+    depth = "depth"
+
+
+class Controls(StrEnum):
+    """Placement of the control points."""
+
+    bounds = "bounds"
+    identity = "identity"
+
+
+class Up(StrEnum):
+    """Axis of the mesh that points up."""
+
+    y = "y"
+    z = "z"
+
+
+Y_UP = (".obj", ".gltf", ".glb")
+"""Formats whose meshes have y up, by definition or by custom."""
+
+
+def command(
+    out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
+    caster: Annotated[
+        Path | None, typer.Option(help="The mesh that moves: OBJ, PLY, STL, glTF, Bézier patches. Without: a horse.")
+    ] = None,
+    up: Annotated[Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")] = None,
+    offset: Annotated[str, typer.Option(metavar="X,Y", help="Where it stands, -0.6 to 0.6 each.")] = "0,0",
+    samples: Annotated[int, typer.Option(help="Samples of the light: 1 (a hard shadow), 5 or 9.")] = 1,
+    light_size: Annotated[
+        float, typer.Option(help="Half the side of the light; the mesh's largest extent is 1.")
+    ] = 0.12,
+    method: Annotated[Method, typer.Option(help="Maps warped, rendered for every sample, or a grid of them.")] = (
+        Method.warp
+    ),
+    map_size: Annotated[int, typer.Option(help="Texels a side of a shadow map.")] = 512,
+    map_samples: Annotated[int, typer.Option(help="k: a texel is the coverage of k x k samples.")] = 1,
+    rows: Annotated[int, typer.Option(help="Control points downwards.")] = 15,
+    columns: Annotated[int, typer.Option(help="Control points across.")] = 5,
+    policy: Annotated[Policy, typer.Option(help="Six warps a map, or three.")] = Policy.dissolve,
+    content: Annotated[Content, typer.Option(help="Silhouettes, or depths.")] = Content.mask,
+    controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = Controls.bounds,
+    maps: Annotated[
+        Path | None, typer.Option(help="--method warp: prepared maps are read from here, or else written here (.npz).")
+    ] = None,
+    eye: Annotated[str, typer.Option(metavar="X,Y,Z", help="The eye; z is up, the floor is at -0.5.")] = "1.4,-3,2.1",
+    target: Annotated[str, typer.Option(metavar="X,Y,Z", help="Point looked at.")] = "0.15,0.35,-0.1",
+    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels of the picture.")] = "640x480",
+    report: Annotated[
+        bool, typer.Option("--report", help="Print how far the shadow is from the rendered one, and the maps' memory.")
+    ] = False,
+    stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+) -> None:
+    """Shadows by image warping (Kang & Ihm 2002) of a mesh that moves over a floor with steps."""
+    where, eye_, target_ = options.place(offset), options.vector(eye), options.vector(target)
+    width, height = options.size(size)
+    if maps is not None and method is not Method.warp:
+        raise typer.BadParameter("--maps goes with --method warp")
+    with progress(4) as step:
+        step("reading the mesh")
+        from ibr_ref import io, models, shadows
+
+        io.check_image_writable(out)
+        for path in (stages, None if maps is None or maps.exists() else maps):
+            if path is not None:
+                io.check_writable(path)
+        scene = models.shadow_stage(
+            _mesh(caster, up),
+            offset=where,
+            light_size=light_size,
+            eye=eye_,
+            target=target_,
+            width=width,
+            height=height,
+        )
+        params = shadows.Params(
+            map_size=map_size,
+            map_samples=map_samples,
+            rows=rows,
+            columns=columns,
+            policy=policy.value,
+            content=content.value,
+            light_samples=samples,
+            method=method.value,
+        )
+        prepared = _prepared(scene, params, controls, maps, step) if method is Method.warp else None
+        step("rendering")
+        frame = shadows.render(scene, params, maps=prepared, stages=report or stages is not None)
+        step("writing")
+        if stages is not None:
+            frame.save_stages(stages)
+        frame.save(out)
+    if report:
+        from ibr_ref.cli.shadow_quality import report_lines
+
+        typer.echo("\n".join(report_lines(scene, params, frame, prepared)))
+
+
+def _mesh(path: Path | None, up: Up | None) -> Mesh:
+    """The caster with z up."""
+    import numpy as np
+
+    from ibr_ref import io, models
+    from ibr_ref.scene import Mesh
+
+    if path is None:
+        return models.horse()
+    mesh = io.read_mesh(path)
+    if up is Up.z or (up is None and path.suffix.lower() not in Y_UP):
+        return mesh
+    x, y, z = np.asarray(mesh.vertices).T
+    return Mesh(vertices=np.stack([x, -z, y], axis=1), triangles=mesh.triangles, color=mesh.color)
+
+
+def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | None, step: Step) -> Maps:
+    """Maps from the file if it is there; otherwise made, and written there if it is named."""
+    from ibr_ref import shadows
+
+    if path is not None and path.exists():
+        step("reading the maps")
+        return shadows.Maps.load(path)
+    step(f"preparing nine maps ({controls.value} controls)")
+    made = shadows.prepare(scene, params, controls=controls.value)
+    if path is not None:
+        made.save(path)
+    return made

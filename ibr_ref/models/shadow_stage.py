@@ -1,0 +1,100 @@
+"""A stage for shadows: a caster that moves over a floor with two steps, under a light from above and aside."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ibr_ref.scene import AreaLight, Camera, Mesh, checks
+from ibr_ref.shadows import Scene
+
+REACH = 0.6
+"""The caster's offset on either axis, in units of its largest extent, which is 1 on the stage."""
+
+_LIGHT = (-1.5, -1.5, 3.5)
+_FIELD_OF_VIEW = 38.0
+"""Degrees: the caster's shadow stays within the map wherever it is, and for every sample of the light."""
+
+_FLOOR = -0.5
+_FOOT = _FLOOR + 1.0 / 128.0
+
+_FLOOR_COLOR, _STEP_COLORS = (0.78, 0.74, 0.66), ((0.55, 0.62, 0.72), (0.72, 0.55, 0.5))
+
+
+def shadow_stage(
+    caster: Mesh,
+    *,
+    offset: ArrayLike = (0.0, 0.0),
+    light_size: float = 0.12,
+    eye: ArrayLike = (1.4, -3.0, 2.1),
+    target: ArrayLike = (0.15, 0.35, -0.1),
+    width: int = 640,
+    height: int = 480,
+) -> Scene:
+    """A scene for `ibr_ref.shadows`: the caster, z up, scaled to a largest extent of 1, over a floor with two steps.
+
+    offset: (x, y), each from -0.6 to 0.6: the object moves along the world's x and y. light_size: half the side of the
+    square light, world units, >= 0. eye, target: the camera's, world space; width, height: its picture, pixels.
+    Raises ValueError for a mesh that is none or has no extent, and what makes no scene.
+    """
+    if not isinstance(caster, Mesh):
+        raise checks.reject("caster", type(caster).__name__, "a Mesh")
+    half = checks.number("light_size", light_size, low=0.0)
+    return Scene(
+        receivers=_receivers(),
+        caster=_scaled(caster),
+        offset_axes=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
+        offset_range=((-REACH, REACH), (-REACH, REACH)),
+        offset=offset,
+        light=AreaLight(
+            position=_LIGHT,
+            target=(0.0, 0.0, 0.0),
+            up=(0.0, 1.0, 0.0),
+            vertical_fov=_FIELD_OF_VIEW,
+            near=0.5,
+            far=12.0,
+            half_edges=((half, 0.0, 0.0), (0.0, half, 0.0)),
+        ),
+        camera=Camera.look_at(
+            eye=eye, target=target, up=(0, 0, 1), vertical_fov=40.0, near=0.1, far=30.0, width=width, height=height
+        ),
+        ambient=0.25,
+        background=(0.82, 0.88, 0.94),
+    )
+
+
+def _scaled(mesh: Mesh) -> Mesh:
+    """Its largest extent 1, the middle of its bounding box above the origin, its lowest point just above the floor."""
+    vertices = np.asarray(mesh.vertices)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    extent = float((high - low).max())
+    if not 0.0 < extent < math.inf:
+        raise checks.reject("caster.vertices", f"a box from {low.tolist()} to {high.tolist()}", "an extent > 0")
+    middle = (low + high) / 2.0
+    foot = np.array([middle[0], middle[1], low[2]])
+    return Mesh(
+        vertices=(vertices - foot) / extent + np.array([0.0, 0.0, _FOOT]),
+        triangles=mesh.triangles,
+        color=mesh.color,
+    )
+
+
+def _receivers() -> list[Mesh]:
+    """The floor, and two steps at its back."""
+    floor = _box((-3.0, -3.0, -0.7), (3.0, 3.0, _FLOOR), _FLOOR_COLOR)
+    steps = [
+        _box((-3.0, y, _FLOOR), (3.0, 3.0, z), color)
+        for (y, z), color in zip(((0.75, -0.4), (1.25, -0.2)), _STEP_COLORS, strict=True)
+    ]
+    return [floor, *steps]
+
+
+def _box(low: tuple[float, float, float], high: tuple[float, float, float], color: ArrayLike) -> Mesh:
+    """A box with outward triangles."""
+    x, y, z = zip(low, high, strict=True)
+    vertices: NDArray[np.float64] = np.array([(x[i & 1], y[i >> 1 & 1], z[i >> 2]) for i in range(8)])
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    triangles = [corner for a, b, c, d in quads for corner in ((a, b, c), (a, c, d))]
+    return Mesh(vertices=vertices, triangles=triangles, color=color)

@@ -1,0 +1,138 @@
+"""`ibr-ref render shadows` and `ibr-ref bench shadows`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import imageio.v3 as imageio
+import numpy as np
+import pytest
+
+from ibr_ref.cli import shadow_quality
+from ibr_ref.cli.bench import shadows as bench
+from tests.cli.conftest import Run
+from tests.cli.errors import assert_one_line
+
+REAL = Path(__file__).parents[2].parent / "shared" / "data" / "models"
+
+
+@pytest.fixture
+def cube(tmp_path: Path) -> Path:
+    """An OBJ file of a cube."""
+    path = tmp_path / "cube.obj"
+    corners = [f"v {x} {y} {z}" for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+    faces = ["f 1 3 4 2", "f 5 6 8 7", "f 1 2 6 5", "f 3 7 8 4", "f 1 5 7 3", "f 2 4 8 6"]
+    path.write_text("\n".join(corners + faces) + "\n")
+    return path
+
+
+def of_cube(cube: Path, out: Path, *more: object) -> tuple[object, ...]:
+    small = ("--map-size", 64, "--rows", 5, "--columns", 4, "--size", "96x72")
+    return ("render", "shadows", "--caster", cube, *small, "--out", out, *more)
+
+
+@pytest.mark.parametrize("method", ["warp", "direct"])
+def test_a_cube_casts_a_shadow(run: Run, cube: Path, tmp_path: Path, method: str) -> None:
+    out, stages = tmp_path / "out.png", tmp_path / "dump.npz"
+    assert run(*of_cube(cube, out, "--method", method, "--samples", 5, "--stages", stages)) == (0, "", "")
+    picture = imageio.imread(out)
+    assert picture.shape == (72, 96, 3)
+    with np.load(stages, allow_pickle=False) as dump:
+        shadow = dump["accumulate.shadow"]
+        assert dump["warp.image"].shape == (5, 64, 64)
+        assert np.array_equal(np.floor(np.clip(dump["color"], 0, 1) * 255 + 0.5), picture)
+    assert 0.005 < (shadow > 0.5).mean() < 0.3
+    assert ((shadow > 0.1) & (shadow < 0.9)).any(), "a soft shadow has a soft edge"
+
+
+def test_prepared_maps_are_written_once_and_read_again(run: Run, cube: Path, tmp_path: Path) -> None:
+    out, maps = tmp_path / "out.png", tmp_path / "maps.npz"
+    assert run(*of_cube(cube, out, "--maps", maps)) == (0, "", "")
+    before, first = maps.read_bytes(), out.read_bytes()
+    assert run(*of_cube(cube, out, "--maps", maps)) == (0, "", "")
+    assert maps.read_bytes() == before
+    assert out.read_bytes() == first
+    assert_one_line(run(*of_cube(cube, out, "--maps", maps, "--rows", 6)), "rows", "5", "6")
+
+
+def test_the_report(run: Run, cube: Path, tmp_path: Path) -> None:
+    code, out, err = run(*of_cube(cube, tmp_path / "out.png", "--report"))
+    assert (code, err) == (0, "")
+    for word in ("bytes", "IoU", "mean difference"):
+        assert word in out
+
+
+def test_a_mesh_of_y_up_stands(run: Run, tmp_path: Path) -> None:
+    """A pole along y: upright as OBJ, lying as it is where z is said to be up."""
+    path = tmp_path / "pole.obj"
+    path.write_text("v 0 0 0\nv .1 0 0\nv .1 5 0\nv 0 5 0\nf 1 2 3\nf 1 3 4\n")
+    pictures = []
+    for more in ((), ("--up", "y"), ("--up", "z")):
+        assert run(*of_cube(path, tmp_path / "out.png", "--method", "direct", *more)) == (0, "", "")
+        pictures.append(imageio.imread(tmp_path / "out.png"))
+    assert np.array_equal(pictures[0], pictures[1])
+    assert not np.array_equal(pictures[0], pictures[2])
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (("--offset", "0.7,0"), ("offset", "-0.6", "0.6")),
+        (("--offset", "0"), ("'0'", "2 numbers")),
+        (("--samples", "4"), ("light_samples", "1, 5, 9")),
+        (("--map-size", "4"), ("map_size",)),
+        (("--rows", "1"), ("rows",)),
+        (("--light-size", "-1"), ("light_size",)),
+        (("--controls", "worst"), ("worst",)),
+        (("--method", "magic"), ("magic",)),
+        (("--method", "direct", "--maps", "m.npz"), ("--maps", "--method")),
+        (("--size", "0x0"), ("0x0",)),
+    ],
+)
+def test_a_bad_option(run: Run, cube: Path, tmp_path: Path, more: tuple[str, ...], words: tuple[str, ...]) -> None:
+    assert_one_line(run(*of_cube(cube, tmp_path / "out.png", *more)), *words)
+    assert not (tmp_path / "out.png").exists()
+
+
+@pytest.mark.parametrize(
+    "text", ["", "not a mesh", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "v 0 0 0\nf 1 1 1\n"], ids=lambda t: t[:8]
+)
+def test_a_bad_mesh(run: Run, tmp_path: Path, text: str) -> None:
+    path = tmp_path / "bad.obj"
+    path.write_text(text)
+    assert run(*of_cube(path, tmp_path / "out.png"))[0] == 2
+    assert not (tmp_path / "out.png").exists()
+
+
+def test_maps_that_are_none(run: Run, cube: Path, tmp_path: Path) -> None:
+    for content in (b"", b"no archive"):
+        (tmp_path / "maps.npz").write_bytes(content)
+        assert_one_line(run(*of_cube(cube, tmp_path / "out.png", "--maps", tmp_path / "maps.npz")), "maps.npz")
+
+
+def test_quality_by_hand() -> None:
+    ours, theirs = np.array([[1.0, 1.0, 0.0, 0.25]]), np.array([[1.0, 0.0, 0.0, 0.0]])
+    assert shadow_quality.iou(ours, theirs) == 0.5
+    assert shadow_quality.iou(0.0 * ours, 0.0 * ours) == 1.0
+    assert shadow_quality.soft_difference(ours, theirs) == pytest.approx(1.25 / 3)
+    assert shadow_quality.soft_difference(0.0 * ours, 0.0 * ours) == 0.0
+
+
+def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench, "SIZES", (64,))
+    code, out, err = run("bench", "shadows", "--repeat", "1", "--json", tmp_path / "times.json")
+    assert (code, err) == (0, "")
+    rows = json.loads((tmp_path / "times.json").read_text())["shadows"]
+    assert {row["way"] for row in rows} >= set(bench.PAPER_KETTLE)
+    assert all(0 < row["best_ms"] <= row["median_ms"] for row in rows)
+    assert {row["object"] for row in rows} == set(bench.PAPER_WARP)
+    assert "tables 1 to 5" in " ".join(out.split())
+
+
+@pytest.mark.skipif(not (REAL / "cow.obj").exists(), reason="the cow is not beside the repository (../shared/data)")
+def test_the_cow(run: Run, tmp_path: Path) -> None:
+    """What the issue of this method ends with."""
+    out = tmp_path / "cow.png"
+    assert run("render", "shadows", "--caster", REAL / "cow.obj", "--samples", "9", "--out", out) == (0, "", "")
+    assert imageio.imread(out).shape == (480, 640, 3)
