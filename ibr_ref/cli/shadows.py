@@ -23,7 +23,7 @@ Examples:
 
     ibr-ref render shadows --caster cow.obj --samples 9 --offset 0.3,-0.2 --out cow.png
 
-    ibr-ref render shadows --caster cow.obj --maps cow.npz --samples 9 --report --out cow.png
+    ibr-ref render shadows --caster cow.obj --controls best --maps cow.npz --samples 9 --report --out cow.png
 """
 
 
@@ -52,6 +52,8 @@ class Content(StrEnum):
 class Controls(StrEnum):
     """Placement of the control points."""
 
+    fast = "fast"
+    best = "best"
     bounds = "bounds"
     identity = "identity"
 
@@ -87,7 +89,7 @@ def command(
     columns: Annotated[int, typer.Option(help="Control points across.")] = 5,
     policy: Annotated[Policy, typer.Option(help="Six warps a map, or three.")] = Policy.dissolve,
     content: Annotated[Content, typer.Option(help="Silhouettes, or depths.")] = Content.mask,
-    controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = Controls.bounds,
+    controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = Controls.fast,
     maps: Annotated[
         Path | None, typer.Option(help="--method warp: prepared maps are read from here, or else written here (.npz).")
     ] = None,

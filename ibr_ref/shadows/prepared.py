@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.io.files import atomic, contents, naming
 from ibr_ref.scene import checks
+from ibr_ref.shadows import automatic, maps
 from ibr_ref.shadows import controls as placement
-from ibr_ref.shadows import maps
 from ibr_ref.shadows.inputs import CONTENTS, LARGEST_MAP, MOST_CONTROLS, Params, Scene
 from ibr_ref.shadows.samples import caster_at, check_outside, samples_of, widened_range
 
@@ -189,12 +189,19 @@ def texels_at(view: maps.View, offset: Array, params: Params) -> NDArray[Any]:
     return maps.mask(view, offset, params.map_size, params.map_samples)
 
 
-def prepare(scene: Scene, params: Params | None = None, *, controls: str | ArrayLike = "bounds") -> Maps:
+def prepare(
+    scene: Scene,
+    params: Params | None = None,
+    *,
+    controls: str | ArrayLike = "fast",
+    progress: automatic.Progress | None = None,
+) -> Maps:
     """Render the nine maps, and place their control points.
 
-    Maps and controls serve every offset in the scene's range, and `params.light_samples`. controls: the name of a
-    placement (`shadows.controls.PLACEMENTS`), or points (3, 3, R, C, 2) in [0, 1]^2, as given. Raises ValueError for a
-    light that is inside the caster at one of the nine places, and for controls of another shape, or folded.
+    Maps and controls serve every offset in the scene's range, and `params.light_samples`. controls: "best" or "fast",
+    automatic placements (`shadows.automatic`); "bounds" or "identity", simple ones (`shadows.controls`); or points
+    (3, 3, R, C, 2) in [0, 1]^2, as given. progress(what, done, total) is called as placement goes on. Raises ValueError
+    for a light that is inside the caster at one of the nine places, and for controls of another shape, or folded.
     """
     params = Params() if params is None else params
     low, high = widened_range(scene, samples_of(scene, params))
@@ -202,24 +209,32 @@ def prepare(scene: Scene, params: Params | None = None, *, controls: str | Array
     positions = maps.positions(low, high, np.array(scene.on_axes(centre)))
     for offset in positions.reshape(-1, 2):
         check_outside("light.position", caster_at(scene, offset), offset, centre)
+    points = _points(controls, params)
     view = view_of(scene, params.map_size)
     texels = np.stack([np.stack([texels_at(view, offset, params) for offset in line]) for line in positions])
+    if isinstance(points, str):
+        images = maps.values(texels, params.map_samples)
+        silhouettes = images if params.content == "mask" else 1.0 - images
+        size = (params.rows, params.columns)
+        if points in placement.PLACEMENTS:
+            points = placement.place(points, silhouettes, *size)
+        else:
+            points = automatic.place(points, view, positions, silhouettes, size, progress)
     return Maps(
         positions=positions,
         texels=texels,
-        controls=_controls(controls, texels, params),
+        controls=points,
         content=params.content,
         samples=params.map_samples,
         source=source_of(scene),
     )
 
 
-def _controls(value: str | ArrayLike, texels: NDArray[Any], params: Params) -> Array:
+def _points(value: str | ArrayLike, params: Params) -> str | Array:
+    """The name of a placement, or points of the right shape."""
     if isinstance(value, str):
-        checks.choice("controls", value, tuple(placement.PLACEMENTS))
-        images = maps.values(texels, params.map_samples)
-        silhouettes = images if params.content == "mask" else 1.0 - images
-        return placement.place(value, silhouettes, params.rows, params.columns)
+        checks.choice("controls", value, (*automatic.RECIPES, *placement.PLACEMENTS))
+        return value
     points = checks.numbers("controls", value, "a placement's name, or an array (3, 3, R, C, 2)")
     if points.shape != (3, 3, params.rows, params.columns, 2):
         raise checks.reject("controls.shape", points.shape, f"{(3, 3, params.rows, params.columns, 2)}")
