@@ -52,6 +52,8 @@ class Content(StrEnum):
 class Controls(StrEnum):
     """Placement of the control points."""
 
+    fast = "fast"
+    best = "best"
     bounds = "bounds"
     identity = "identity"
 
@@ -87,7 +89,7 @@ def command(
     columns: Annotated[int, typer.Option(help="Control points across.")] = 5,
     policy: Annotated[Policy, typer.Option(help="Six warps a map, or three.")] = Policy.dissolve,
     content: Annotated[Content, typer.Option(help="Silhouettes, or depths.")] = Content.mask,
-    controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = Controls.bounds,
+    controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = Controls.fast,
     maps: Annotated[
         Path | None, typer.Option(help="--method warp: prepared maps are read from here, or else written here (.npz).")
     ] = None,
@@ -168,7 +170,7 @@ def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | Non
         step("reading the maps")
         return shadows.Maps.load(path)
     step(f"preparing nine maps ({controls.value} controls)")
-    made = shadows.prepare(scene, params, controls=controls.value)
+    made = shadows.prepare(scene, params, controls=controls.value, progress=step.within)
     if path is not None:
         made.save(path)
     return made

@@ -75,7 +75,7 @@ def _free(controls: Array) -> Array:
 def _stiffness() -> Array:
     """(24, 24) of an element: squared differences of the steps along a triangle's sides, in its four maps."""
     sides = np.array([[2.0, -1.0, -1.0], [-1.0, 2.0, -1.0], [-1.0, -1.0, 2.0]])
-    return np.kron(np.eye(4), np.kron(sides, np.eye(2)))
+    return np.asarray(np.kron(np.eye(4), np.kron(sides, np.eye(2))), np.float64)
 
 
 class _Registration:

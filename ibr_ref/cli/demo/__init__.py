@@ -72,7 +72,5 @@ def _table(title: str, note: str, rows: list[tuple[Picture, float | None]]) -> A
     for column in ("figure", "settings", "this machine, ms", "paper, ms"):
         table.add_column(column, justify="right" if column.endswith("ms") else "left")
     for picture, taken in rows:
-        table.add_row(
-            picture.caption, picture.settings, "" if taken is None else f"{taken:.1f}", picture.paper_ms
-        )
+        table.add_row(picture.caption, picture.settings, "" if taken is None else f"{taken:.1f}", picture.paper_ms)
     return table

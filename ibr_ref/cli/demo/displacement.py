@@ -49,7 +49,9 @@ def _figure_6() -> list[Picture]:
     from ibr_ref.scene import Camera, Light
 
     box = models.box()
-    camera = Camera.look_at(eye=(0.65, -1.3, 0.85), target=(0.0, 0.02, 0.08), near=0.05, far=10.0, width=WIDTH, height=HEIGHT)
+    camera = Camera.look_at(
+        eye=(0.65, -1.3, 0.85), target=(0.0, 0.02, 0.08), near=0.05, far=10.0, width=WIDTH, height=HEIGHT
+    )
     low = displacement.Scene(
         polygons=[replace(box, facade_map=None)],
         camera=camera,
@@ -78,7 +80,9 @@ def _city() -> list[Picture]:
     city = models.city()
     scene = displacement.Scene(
         polygons=[city],
-        camera=Camera.look_at(eye=(2.1, -3.5, 1.9), target=(0.05, -0.1, 0.05), near=0.1, far=20.0, width=WIDTH, height=HEIGHT),
+        camera=Camera.look_at(
+            eye=(2.1, -3.5, 1.9), target=(0.05, -0.1, 0.05), near=0.1, far=20.0, width=WIDTH, height=HEIGHT
+        ),
         light=Light(direction=(-0.7, -0.5, 1.0)),
         background=(0.72, 0.82, 0.93),
     )

@@ -108,6 +108,8 @@ def _warped_and_rendered() -> Any:
     a, b = warped[window], rendered[window]
     greys = [1.0 - 0.85 * m[..., None].repeat(3, axis=2) for m in (a, b)]
     both = np.minimum(a, b)
-    difference = np.stack([1.0 - both - 0.9 * (b - both), 1.0 - np.maximum(a, b), 1.0 - both - 0.9 * (a - both)], axis=2)
+    difference = np.stack(
+        [1.0 - both - 0.9 * (b - both), 1.0 - np.maximum(a, b), 1.0 - both - 0.9 * (a - both)], axis=2
+    )
     gap = np.full((12, 400, 3), 0.9)
     return on_canvas(np.concatenate([greys[0], gap, greys[1], gap, np.clip(difference, 0.0, 1.0)]))
