@@ -25,7 +25,7 @@ _LEAST_AREA = 2e-5
 _BARRIER = 1e-3
 """Its strength, beside squared differences of coverage."""
 
-_SMOOTHNESS = 0.1
+_SMOOTHNESS = 0.01
 """Of a step, beside the mean of the diagonal of J^T J; _RIDGE keeps what has no slope at all in place."""
 _RIDGE = 1e-3
 
