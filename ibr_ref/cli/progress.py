@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+_COMPILING = "compiling kernels (first run)"
 
 
 class Step(Protocol):
@@ -13,10 +18,41 @@ class Step(Protocol):
     def __call__(self, description: str) -> None:
         """Name the step that begins."""
 
+    def within(self, description: str, done: int, total: int) -> None:
+        """Say how far a long step is."""
+
+
+class _Bars:
+    """The bars of one task: its steps, and how far the step is."""
+
+    def __init__(self, bars: Progress, steps: int) -> None:
+        self.bars = bars
+        self.work = bars.add_task("starting", total=steps)
+        self.part = bars.add_task("", total=None, visible=False)
+        self.compiling = bars.add_task(_COMPILING, total=None, visible=False)
+        self.begun: set[str] = set()
+        self.started = 0
+
+    def compiles(self, name: str) -> None:
+        from ibr_ref import jit
+
+        self.begun.add(name)
+        total, description = len(jit.functions), f"{_COMPILING}: {name}"
+        self.bars.update(self.compiling, visible=True, total=total, completed=len(self.begun), description=description)
+
+    def __call__(self, description: str) -> None:
+        self.bars.update(self.work, description=description, completed=self.started)
+        for bar in (self.part, self.compiling):
+            self.bars.update(bar, visible=False)
+        self.started += 1
+
+    def within(self, description: str, done: int, total: int) -> None:
+        self.bars.update(self.part, visible=True, description=description, completed=done, total=total)
+
 
 @contextmanager
 def progress(steps: int) -> Iterator[Step]:
-    """Show a bar of `steps` steps and, while kernels are compiled (a first run), a second one that says how far that is."""
+    """Show a bar of `steps` steps and, while kernels are compiled (a first run), another one that says how far that is."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -25,27 +61,6 @@ def progress(steps: int) -> Iterator[Step]:
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, disable=not console.is_terminal, transient=True) as bars:
-        work = bars.add_task("starting", total=steps)
-        compiling = bars.add_task("compiling kernels (first run)", total=None, visible=False)
-        begun: set[str] = set()
-
-        def compiles(name: str) -> None:
-            begun.add(name)
-            bars.update(
-                compiling,
-                visible=True,
-                total=len(jit.functions),
-                completed=len(begun),
-                description=f"compiling kernels (first run): {name}",
-            )
-
-        started = 0
-
-        def step(description: str) -> None:
-            nonlocal started
-            bars.update(work, description=description, completed=started)
-            bars.update(compiling, visible=False)
-            started += 1
-
-        with jit.compilations(compiles):
+        step = _Bars(bars, steps)
+        with jit.compilations(step.compiles):
             yield step

@@ -170,7 +170,7 @@ def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | Non
         step("reading the maps")
         return shadows.Maps.load(path)
     step(f"preparing nine maps ({controls.value} controls)")
-    made = shadows.prepare(scene, params, controls=controls.value)
+    made = shadows.prepare(scene, params, controls=controls.value, progress=step.within)
     if path is not None:
         made.save(path)
     return made

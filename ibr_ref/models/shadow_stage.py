@@ -13,8 +13,8 @@ from ibr_ref.shadows import Scene
 REACH = 0.6
 """The caster's offset on either axis, in units of its largest extent, which is 1 on the stage."""
 
-_LIGHT = (-1.5, -1.5, 3.5)
-_FIELD_OF_VIEW = 38.0
+_LIGHT = (-1.0, -1.2, 5.0)
+_FIELD_OF_VIEW = 27.0
 """Degrees: the caster's shadow stays within the map wherever it is, and for every sample of the light."""
 
 _FLOOR = -0.5

@@ -99,15 +99,22 @@ def places(view: maps.View, positions: Array, size: int, side: int, phase: float
 class _Work:
     """One run: what is made once for each level, and the count of steps that are done."""
 
-    def __init__(self, view: maps.View, positions: Array, size: int, recipe: Recipe, progress: Progress | None) -> None:
-        self.view, self.positions, self.size, self.progress = view, positions, size, progress
+    def __init__(
+        self, view: maps.View, positions: Array, silhouettes: Array, recipe: Recipe, progress: Progress | None
+    ) -> None:
+        self.view, self.positions, self.silhouettes, self.progress = view, positions, silhouettes, progress
         self.done, self.total = 0, sum(level.steps for level in 2 * recipe.starts + recipe.finish)
         self.tasks: dict[Level, Task] = {}
 
     def task(self, level: Level, phase: float = _TRAINING) -> Task:
-        size = min(level.size, self.size)
-        images = _rendered(self.view, self.positions.reshape(9, 2), size).reshape(9, -1)
-        return Task(images, places(self.view, self.positions, size, level.side, phase))
+        """At the maps' own size the maps themselves are registered, with the steps in their outlines: .01 at worst."""
+        own = self.silhouettes.shape[2]
+        size = min(level.size, own)
+        if size == own:
+            images = _smoothed(self.silhouettes.reshape(9, own, own))
+        else:
+            images = _rendered(self.view, self.positions.reshape(9, 2), size)
+        return Task(images.reshape(9, -1), places(self.view, self.positions, size, level.side, phase))
 
     def run(self, points: Array, levels: tuple[Level, ...], what: str) -> Array:
         for level in levels:
@@ -125,20 +132,25 @@ class _Work:
 
 
 def place(
-    quality: str, view: maps.View, positions: Array, images: Array, grid: tuple[int, int], progress: Progress | None
+    quality: str,
+    view: maps.View,
+    positions: Array,
+    silhouettes: Array,
+    grid: tuple[int, int],
+    progress: Progress | None,
 ) -> Array:
     """Controls (3, 3, R, C, 2) by one of `RECIPES`, on the lattice of the window.
 
-    view: what the maps are rendered of, at any size; positions (3, 3, 2) of the nine maps; images (3, 3, S, S): their
-    silhouettes. The border stays on the border; no triangle folds, in the nine grids or at any place between them. Where
-    there is nothing to register (a map without a silhouette), or too much (more points than _MOST_POINTS), the
-    first of the simple placements is returned.
+    view: what the maps are rendered of, at any size; positions (3, 3, 2) of the nine maps; silhouettes (3, 3, S, S):
+    theirs, 0 to 1, as sharp as the maps. The border stays on the border; no triangle folds, in the nine grids or at any
+    place between them. Where there is nothing to register (a map without a silhouette), or too much (more points than
+    _MOST_POINTS), the first of the simple placements is returned.
     """
-    recipe, size, (rows, columns) = RECIPES[quality], images.shape[2], grid
-    starts = [bounds(images, rows, columns), turned(bounds(images, columns, rows))]
-    if rows * columns > _MOST_POINTS or not (images > 0.0).any(axis=(2, 3)).all():
+    recipe, size, (rows, columns) = RECIPES[quality], silhouettes.shape[2], grid
+    starts = [bounds(silhouettes, rows, columns), turned(bounds(silhouettes, columns, rows))]
+    if rows * columns > _MOST_POINTS or not (silhouettes > 0.0).any(axis=(2, 3)).all():
         return on_lattice(starts[0], size)
-    work = _Work(view, positions, size, recipe, progress)
+    work = _Work(view, positions, silhouettes, recipe, progress)
     names = ("control points, rows downwards", "control points, rows across")
     placed = [work.run(start, recipe.starts, name) for start, name in zip(starts, names, strict=True)]
     others = work.task(recipe.starts[-1], _OTHERS)

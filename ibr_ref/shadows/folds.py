@@ -8,6 +8,8 @@ place. As sums of products of coordinates they have simple derivatives, and keep
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,7 +24,8 @@ def _forms() -> Array:
     along = np.zeros((3, 2, 2))  # products of linear polynomials, by degree
     along[0, 0, 0] = along[2, 1, 1] = 1.0
     along[1, 0, 1] = along[1, 1, 0] = 0.5
-    return np.einsum("mac,nbd->mnabcd", along, along).reshape(9, 4, 4)
+    forms: Array = np.einsum("mac,nbd->mnabcd", along, along).reshape(9, 4, 4)
+    return forms
 
 
 _FORMS = _forms()
@@ -82,7 +85,7 @@ def _push(forms, corners, least, strength, matrix, gradient):
         for i in range(24):
             gradient[i] -= strength / room * slope[i]
             for j in range(24):
-                matrix[i, j] += strength / (room * room) * slope[i] * slope[j]
+                matrix[i, j] += strength / (room * room) * (slope[i] * slope[j])
 
 
 @kernel
@@ -98,7 +101,7 @@ def coefficients(corners: Array) -> Array:
     return out
 
 
-def four_grids(controls: Array) -> Array:
+def four_grids(controls: NDArray[Any]) -> NDArray[Any]:
     """(4, T, 4, 3, 2) the corners of the triangles in the four maps 00, 10, 01, 11 of each cell."""
     triangles = [[grid_triangles(grid) for grid in line] for line in controls]
     cells = [(j, i) for j in range(2) for i in range(2)]
@@ -115,7 +118,7 @@ def barrier(corners: Array, least: float, strength: float) -> float:
     room = coefficients(corners) - least
     if not (room > 0.0).all():
         return np.inf
-    return -strength * sum(np.log(room).ravel().tolist())
+    return -strength * float(sum(np.log(room).ravel().tolist()))
 
 
 def add_barrier(corners: Array, least: float, strength: float, matrix: Array, gradient: Array) -> None:

@@ -214,7 +214,7 @@ def prepare(
     texels = np.stack([np.stack([texels_at(view, offset, params) for offset in line]) for line in positions])
     if isinstance(points, str):
         images = maps.values(texels, params.map_samples)
-        silhouettes = images if params.content == "mask" else 1.0 - images
+        silhouettes = images if params.content == "mask" else (images < 1.0).astype(np.float64)
         size = (params.rows, params.columns)
         if points in placement.PLACEMENTS:
             points = placement.place(points, silhouettes, *size)

@@ -25,7 +25,7 @@ _LEAST_AREA = 2e-5
 _BARRIER = 1e-3
 """Its strength, beside squared differences of coverage."""
 
-_SMOOTHNESS = 0.1
+_SMOOTHNESS = 0.01
 """Of a step, beside the mean of the diagonal of J^T J; _RIDGE keeps what has no slope at all in place."""
 _RIDGE = 1e-3
 
@@ -75,7 +75,7 @@ def _free(controls: Array) -> Array:
 def _stiffness() -> Array:
     """(24, 24) of an element: squared differences of the steps along a triangle's sides, in its four maps."""
     sides = np.array([[2.0, -1.0, -1.0], [-1.0, 2.0, -1.0], [-1.0, -1.0, 2.0]])
-    return np.kron(np.eye(4), np.kron(sides, np.eye(2)))
+    return np.asarray(np.kron(np.eye(4), np.kron(sides, np.eye(2))), np.float64)
 
 
 class _Registration:

@@ -206,4 +206,4 @@ def cost(images: Array, places: Places, controls: Array) -> float:
     elements = _elements(controls, places)
     costs = np.zeros(4 * elements.sources.shape[1])
     _run(images, places, elements, None, None, costs)
-    return sum(costs.tolist())
+    return float(sum(costs.tolist()))
