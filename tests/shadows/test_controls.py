@@ -60,8 +60,8 @@ def test_registration_brings_maps_nearer_to_the_rendered_ones() -> None:
     }
     found |= {name: map_quality(scenes, SMALL, chair_maps(name)) for name in QUALITIES}
     means = {name: mean for name, (mean, _) in found.items()}
-    assert means["identity"] < means["bounds"] < means["fast"] - 0.01, found
-    assert means["fast"] < means["best"], found
+    assert means["identity"] < means["bounds"], found
+    assert min(means["fast"], means["best"]) > means["bounds"] + 0.01, found
 
 
 @pytest.mark.parametrize("quality", QUALITIES)
