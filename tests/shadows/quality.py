@@ -24,7 +24,7 @@ OFFSETS, SOFT_OFFSETS = 64, 8
 
 
 def cow() -> Mesh:
-    """Keenan Crane's cow on its feet: the file's y points up."""
+    """The cow on its feet: the file's y points up."""
     mesh = io.read_mesh(DATA / "cow.obj")
     x, y, z = np.asarray(mesh.vertices).T
     return Mesh(vertices=np.stack([x, -z, y], axis=1), triangles=mesh.triangles)
