@@ -30,6 +30,7 @@ from ibr_ref.displacement.resolve import (
 from ibr_ref.displacement.self_shadow import self_shadow
 from ibr_ref.displacement.shade import albedos, facades, height_normals, light_hits, mapped_normals, slopes
 from ibr_ref.jit import device, kernel, prange
+from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, fill_depth, fill_varyings
 
 PROTRUDED, EXACT, RELIEF, TEXTURE = range(4)
@@ -192,9 +193,7 @@ def draw(
     """
     band_rows = max(1, BAND_PIXELS // width)
     bands = (height + band_rows - 1) // band_rows
-    stride = max(1, int(bands * 0.618))
-    while np.gcd(stride, bands) != 1:
-        stride += 1
+    stride = stride_of(bands)
     for turn in prange(bands):
         first_row = (turn * stride) % bands * band_rows
         last_row = min(height, first_row + band_rows)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.jit import LANES, device
-from ibr_ref.pipeline.lighting import light_wave, lit_channel, unit
+from ibr_ref.pipeline.lighting import homogeneous, light_wave, lit_channel, unit
 from ibr_ref.pipeline.sampling import fetch, footprint, mix_channel
 from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, store
 
@@ -175,15 +175,9 @@ def facades(hits, count, texels, columns, rows, constants, shades):
 
 
 @device
-def _four(array):
-    """A homogeneous point or direction as a tuple."""
-    return array[0], array[1], array[2], array[3]
-
-
-@device
 def light_hits(hits, count, constants, shades):
     """Phong: albedo (ambient + diffuse lit max(0, n.l)) + specular lit max(0, r.v)^e where n.l > 0."""
-    light, eye = _four(constants.light_world), _four(constants.eye_world)
+    light, eye = homogeneous(constants.light_world), homogeneous(constants.eye_world)
     c, a = constants.corner, constants.axes
     c0, c1, c2 = c[0], c[1], c[2]
     u0, u1, u2, v0, v1, v2 = a[0, 0], a[0, 1], a[0, 2], a[1, 0], a[1, 1], a[1, 2]

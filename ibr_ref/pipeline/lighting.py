@@ -19,11 +19,17 @@ def unit(x, y, z):
 
 
 @device
-def towards(homogeneous, x, y, z):
+def homogeneous(array):
+    """A homogeneous point or direction (4,) as scalars, which loops over lanes need not read again."""
+    return array[0], array[1], array[2], array[3]
+
+
+@device
+def towards(source, x, y, z):
     """Unit vector from a world point towards a homogeneous one."""
-    if homogeneous[3] == 0.0:
-        return homogeneous[0], homogeneous[1], homogeneous[2]
-    return unit(homogeneous[0] - x, homogeneous[1] - y, homogeneous[2] - z)
+    if source[3] == 0.0:
+        return source[0], source[1], source[2]
+    return unit(source[0] - x, source[1] - y, source[2] - z)
 
 
 @device

@@ -15,15 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
+from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.memory import arrays
 from ibr_ref.pipeline.merge import passes
 from ibr_ref.pipeline.sampling import clamped
+from ibr_ref.pipeline.triangles import SUBPIXELS
 
 _BAND_SHIFT = np.uint32(3)
 BAND_ROWS = 8
 """Rows of a band: the buffers of one, of a common picture, fit into the L2 cache."""
 
-_SUBPIXELS = 256.0
+_SUBPIXELS = float(SUBPIXELS)
 _PARTS = 32  # into which a list of splats is cut, to be sorted by all threads
 
 
@@ -240,9 +242,7 @@ def _draw_band(splats, spans, members, disc, first_row, base, target):
 def _draw(splats, spans, members, starts, disc, base, target):
     """All bands, in an order that gives every thread an even sample of the picture."""
     bands = len(starts) - 1
-    stride = max(1, int(bands * 0.618))
-    while np.gcd(stride, bands) != 1:
-        stride += 1
+    stride = stride_of(bands)
     for turn in prange(bands):
         band = (turn * stride) % bands
         _draw_band(splats, spans, members[starts[band] : starts[band + 1]], disc, band * BAND_ROWS, base, target)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import LANES, device, kernel, prange
-from ibr_ref.pipeline.lighting import light_wave, lit_channel
+from ibr_ref.pipeline.lighting import homogeneous, light_wave, lit_channel
 from ibr_ref.pipeline.waves import lanes
 from ibr_ref.splatting.buffers import Law, Lighting, Reference, Vertices, View
 from ibr_ref.splatting.normals import decoded
@@ -122,19 +122,13 @@ def place(reference: Reference, view: View, law: Law, first_row: int, last_row: 
 
 
 @device
-def _four(array):
-    """A homogeneous point or direction as a tuple."""
-    return array[0], array[1], array[2], array[3]
-
-
-@device
 def light_pixels(reference, normals, lighting, eye_array, pixels, colors):
     """Colours (n, 3) of the points of some pixels (n,) of a reference image: Phong with its colour and 8-bit normal."""
     albedo, depths, width = reference.color, reference.depth, np.float64(reference.columns)
     k, m, perspective = reference.intrinsics, reference.world_from_view, reference.perspective
     m0, m1, m2 = _row(m, 0), _row(m, 1), _row(m, 2)
     f_x, skew, center_x, f_y, center_y = k[0, 0], k[0, 1], k[0, 2], k[1, 1], k[1, 2]
-    light, eye = _four(lighting.light), _four(eye_array)
+    light, eye = homogeneous(lighting.light), homogeneous(eye_array)
     ambient, diffuse, specular = lighting.phong[0], lighting.phong[1], lighting.phong[2]
     index, x, y, z, nx, ny, nz = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
     lit, cosine, power, shine, channel = lanes(), lanes(), lanes(), lanes(), lanes()

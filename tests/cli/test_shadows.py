@@ -17,16 +17,6 @@ from tests.cli.errors import assert_one_line
 REAL = Path(__file__).parents[2].parent / "shared" / "data" / "models"
 
 
-@pytest.fixture
-def cube(tmp_path: Path) -> Path:
-    """An OBJ file of a cube."""
-    path = tmp_path / "cube.obj"
-    corners = [f"v {x} {y} {z}" for z in (0, 1) for y in (0, 1) for x in (0, 1)]
-    faces = ["f 1 3 4 2", "f 5 6 8 7", "f 1 2 6 5", "f 3 7 8 4", "f 1 5 7 3", "f 2 4 8 6"]
-    path.write_text("\n".join(corners + faces) + "\n")
-    return path
-
-
 def of_cube(cube: Path, out: Path, *more: object) -> tuple[object, ...]:
     small = ("--map-size", 64, "--rows", 5, "--columns", 4, "--size", "96x72")
     return ("render", "shadows", "--caster", cube, *small, "--out", out, *more)

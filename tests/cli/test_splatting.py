@@ -21,16 +21,6 @@ real_data = pytest.mark.skipif(
 )
 
 
-@pytest.fixture
-def cube(tmp_path: Path) -> Path:
-    """An OBJ file of a cube."""
-    path = tmp_path / "cube.obj"
-    corners = [f"v {x} {y} {z}" for z in (0, 1) for y in (0, 1) for x in (0, 1)]
-    faces = ["f 1 3 4 2", "f 5 6 8 7", "f 1 2 6 5", "f 3 7 8 4", "f 1 5 7 3", "f 2 4 8 6"]
-    path.write_text("\n".join(corners + faces) + "\n")
-    return path
-
-
 def of_mesh(cube: Path, out: Path, *more: object) -> tuple[object, ...]:
     size = ("--count", 4, "--reference-size", 48, "--size", "80x60")
     return ("render", "splatting", "--mesh", cube, *size, "--out", out, *more)

@@ -19,13 +19,10 @@ from numpy.typing import NDArray
 
 from ibr_ref.displacement import Params, Scene
 from ibr_ref.scene import BasePolygon, Camera, Light
+from tests.drawn import real
 from tests.naive import patch as naive_patch
 
 Array = NDArray[np.float64]
-
-FINENESS = 2**20
-GOLDEN = 648055
-"""Golden ratio of `FINENESS`, odd: its multiples spread evenly however unevenly (small numbers first) Hypothesis draws."""
 
 
 @dataclass(frozen=True)
@@ -66,12 +63,6 @@ class Shape:
 
 
 # --- Numbers ---------------------------------------------------------------------------------------------------------
-
-
-def real(low: float, high: float, *special: float) -> SearchStrategy[float]:
-    """A number spread evenly over [low, high]; one in three is `special`, if there are such."""
-    even = st.integers(0, FINENESS).map(lambda k: low + (high - low) * (k * GOLDEN % FINENESS / FINENESS))
-    return st.one_of(even, even, st.sampled_from(special)) if special else even
 
 
 def often(usual: Any, *others: Any) -> SearchStrategy[Any]:

@@ -9,12 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from ibr_ref import displacement, models
 from ibr_ref.displacement import Params, Scene
 from ibr_ref.scene import BasePolygon, Camera, Light
-from tests import naive
+from tests import drawn, naive
 from tests.agreement import Arrays, arrays_of, check_agreement, check_without_stages
 from tests.displacement.features import features
 from tests.displacement.strategies import REGIONS, Case, cases
@@ -58,21 +57,8 @@ def agree(case: Case) -> None:
 
 
 def run_scene(number: int) -> None:
-    """Draw the simplest scene and a random one, with the eye in a region of its own, and compare both.
-
-    Each scene is a run of Hypothesis of its own: within a run it derives five examples from each that it draws, by
-    copying numbers about, and most come out as the same picture. `Phase.shrink` is left out to fail fast: add it to
-    find the smallest scene that fails.
-    """
-    chosen = settings(
-        max_examples=2,
-        derandomize=True,
-        deadline=None,
-        database=None,
-        phases=[Phase.generate],
-        suppress_health_check=list(HealthCheck),
-    )
-    seed(number)(chosen(given(case=cases(REGIONS[number % len(REGIONS)]))(agree)))()
+    """Compare two drawn scenes, with the eye in a region of its own."""
+    drawn.run_scene(number, cases(REGIONS[number % len(REGIONS)]), agree)
 
 
 @pytest.mark.parametrize("number", range(SCENES))

@@ -6,10 +6,10 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from ibr_ref import shadows
 from ibr_ref.io import Frame
+from tests import drawn
 from tests.agreement import arrays_of, differences, flat
 from tests.naive import shadows as twin
 from tests.shadows.strategies import Case, cases
@@ -63,16 +63,8 @@ def features(case: Case, frame: Frame) -> set[str]:
 
 
 def run_scene(number: int) -> None:
-    """Draw the simplest scene and a random one, each run with a seed of its own, and compare both."""
-    chosen = settings(
-        max_examples=2,
-        derandomize=True,
-        deadline=None,
-        database=None,
-        phases=[Phase.generate],
-        suppress_health_check=list(HealthCheck),
-    )
-    seed(number)(chosen(given(case=cases())(agree)))()
+    """Compare two drawn scenes."""
+    drawn.run_scene(number, cases(), agree)
 
 
 @pytest.mark.parametrize("number", range(SCENES))

@@ -17,10 +17,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.scene import Camera, DepthImage, Light
 from ibr_ref.splatting import Params, Scene
-
-FINENESS = 2**20
-GOLDEN = 648055
-"""Golden ratio of `FINENESS`, odd: its multiples spread evenly however unevenly (small numbers first) Hypothesis draws."""
+from tests.drawn import real
 
 
 @dataclass(frozen=True)
@@ -29,12 +26,6 @@ class Case:
 
     scene: Scene
     params: Params
-
-
-def real(low: float, high: float, *special: float) -> SearchStrategy[float]:
-    """A number spread evenly over [low, high]; one in three is `special`, if there are such."""
-    even = st.integers(0, FINENESS).map(lambda k: low + (high - low) * (k * GOLDEN % FINENESS / FINENESS))
-    return st.one_of(even, even, st.sampled_from(special)) if special else even
 
 
 @st.composite

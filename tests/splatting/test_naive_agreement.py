@@ -6,10 +6,10 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from ibr_ref import splatting
 from ibr_ref.io import Frame
+from tests import drawn
 from tests.agreement import arrays_of, check_agreement, check_without_stages
 from tests.naive import splatting as twin
 from tests.splatting.strategies import Case, cases
@@ -75,16 +75,8 @@ def agree(case: Case) -> None:
 
 
 def run_scene(number: int) -> None:
-    """Draw the simplest scene and a random one and compare both (one run of Hypothesis each: within one it copies)."""
-    chosen = settings(
-        max_examples=2,
-        derandomize=True,
-        deadline=None,
-        database=None,
-        phases=[Phase.generate],
-        suppress_health_check=list(HealthCheck),
-    )
-    seed(number)(chosen(given(case=cases())(agree)))()
+    """Compare two drawn scenes."""
+    drawn.run_scene(number, cases(), agree)
 
 
 @pytest.mark.parametrize("number", range(SCENES))
