@@ -1,0 +1,167 @@
+"""The arithmetic of a graphics device, operation by operation: what a `Policy` does of what a device may do.
+
+Numbers are float64 arrays that hold float32 values: each operation is computed in float64 and rounded once, which for sums,
+products, quotients and square roots of float32 numbers is the correctly rounded float32 result (Figueroa 1995: double
+rounding is harmless with 2 p + 2 bits).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Policy:
+    """One way to be a correct device."""
+
+    float_bits: int = 32
+    """32, or 64 for a device that rounds like the reference."""
+    backwards: bool = False
+    """Sums are added from the right."""
+    fused: bool = False
+    """Products are not rounded before they are added."""
+    reciprocal: bool = False
+    """A quotient is the product with the rounded reciprocal; a square root is the reciprocal of an inverse root."""
+    jitter: int = 0
+    """Every result moves by up to so many units in the last place, at random."""
+    seed: int = 0
+    """Of the jitter."""
+    weight_bits: int | None = None
+    """Fractional bits of bilinear weights; None: not rounded."""
+    weight_rounding: str = "nearest"
+    """nearest | down."""
+    subpixel_bits: int = 8
+    """Fractional bits of window positions."""
+    subpixel_rounding: str = "even"
+    """even | up (ties) | down (truncated)."""
+    snapped_varyings: bool = True
+    """Varyings are interpolated over the snapped triangle, as in the reference; else over the unsnapped one."""
+    depth_bits: int | None = None
+    """24: depths are rounded to multiples of 1/(2^24 - 1); None: floats."""
+    color_bits: int | None = None
+    """8: colours are rounded to bytes."""
+
+
+class Arithmetic:
+    """Operations as a policy makes them. Arguments are numbers or arrays that broadcast."""
+
+    def __init__(self, policy: Policy) -> None:
+        self.policy = policy
+        self._random = np.random.default_rng(policy.seed)
+
+    def number(self, value: ArrayLike) -> Floats:
+        """A value as it is uploaded: rounded to the nearest float, never jittered."""
+        array = np.asarray(value, np.float64)
+        return array if self.policy.float_bits == 64 else array.astype(np.float32).astype(np.float64)
+
+    def round(self, value: ArrayLike) -> Floats:
+        """A result of one operation."""
+        array = self.number(value)
+        if self.policy.jitter and self.policy.float_bits == 32:
+            unit = np.spacing(np.abs(array).astype(np.float32)).astype(np.float64)
+            steps = self._random.integers(-self.policy.jitter, self.policy.jitter + 1, array.shape)
+            array = self.number(np.where(np.isfinite(array), array + steps * unit, array))
+        return array
+
+    def add(self, a: ArrayLike, b: ArrayLike) -> Floats:
+        """A + b."""
+        return self.round(np.add(a, b))
+
+    def subtract(self, a: ArrayLike, b: ArrayLike) -> Floats:
+        """A - b."""
+        return self.round(np.subtract(a, b))
+
+    def multiply(self, a: ArrayLike, b: ArrayLike) -> Floats:
+        """A b."""
+        return self.round(np.multiply(a, b))
+
+    def divide(self, a: ArrayLike, b: ArrayLike) -> Floats:
+        """A / b."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if self.policy.reciprocal:
+                return self.multiply(a, self.round(np.divide(1.0, b)))
+            return self.round(np.divide(a, b))
+
+    def root(self, a: ArrayLike) -> Floats:
+        """The square root."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if self.policy.reciprocal:
+                inverse = self.round(1.0 / np.sqrt(a))
+                return np.where(np.asarray(a) == 0.0, 0.0, self.round(1.0 / inverse))
+            return self.round(np.sqrt(a))
+
+    def sum(self, terms: Sequence[ArrayLike]) -> Floats:
+        """All terms, from the left, or from the right."""
+        ordered = [*terms][::-1] if self.policy.backwards else [*terms]
+        return np.asarray(reduce(self.add, ordered), np.float64)
+
+    def dot(self, a: Sequence[ArrayLike], b: Sequence[ArrayLike]) -> Floats:
+        """Sum of the products of two sequences."""
+        pairs = list(zip(a, b, strict=True))
+        if self.policy.backwards:
+            pairs.reverse()
+        result = self.multiply(*pairs[0])
+        for x, y in pairs[1:]:
+            if self.policy.fused:
+                result = self.round(np.multiply(x, y) + result)
+            else:
+                result = self.add(result, self.multiply(x, y))
+        return result
+
+    def lerp(self, a: ArrayLike, b: ArrayLike, f: ArrayLike) -> Floats:
+        """A (1 - f) + b f."""
+        return self.dot([a, b], [self.subtract(1.0, f), f])
+
+    def unit(self, a: Sequence[ArrayLike]) -> list[Floats]:
+        """A vector divided by its length; the zero vector stays."""
+        length = self.root(self.dot(a, a))
+        safe = np.where(length > 0.0, length, 1.0)
+        return [self.divide(x, safe) for x in a]
+
+    def power(self, base: ArrayLike, exponent: int) -> Floats:
+        """A whole power by repeated squaring, lowest bit first."""
+        result, base = np.ones_like(np.asarray(base, np.float64)), np.asarray(base, np.float64)
+        while exponent:
+            if exponent % 2:
+                result = self.multiply(result, base)
+            base = self.multiply(base, base)
+            exponent //= 2
+        return result
+
+    def weight(self, fraction: Floats) -> Floats:
+        """A bilinear weight as the texture unit has it."""
+        if self.policy.weight_bits is None:
+            return fraction
+        steps = fraction * 2.0**self.policy.weight_bits
+        return (np.floor(steps) if self.policy.weight_rounding == "down" else np.rint(steps)) / (
+            2.0**self.policy.weight_bits
+        )
+
+    def snap(self, window: ArrayLike) -> Floats:
+        """A window position on the raster of subpixels."""
+        steps = np.asarray(window, np.float64) * 2.0**self.policy.subpixel_bits
+        if self.policy.subpixel_rounding == "even":
+            steps = np.rint(steps)
+        else:
+            steps = np.floor(steps + (0.5 if self.policy.subpixel_rounding == "up" else 0.0))
+        return np.asarray(steps / 2.0**self.policy.subpixel_bits, np.float64)
+
+    def depth(self, depth: ArrayLike) -> Floats:
+        """A window depth as the depth buffer holds it."""
+        if self.policy.depth_bits is None:
+            return self.number(depth)
+        most = 2.0**self.policy.depth_bits - 1.0
+        return np.asarray(np.floor(np.clip(depth, 0.0, 1.0) * most + 0.5) / most, np.float64)
+
+    def color(self, color: ArrayLike) -> Floats:
+        """A colour as the frame buffer holds it: bytes are given back as k / 255."""
+        if self.policy.color_bits is None:
+            return self.number(color)
+        return np.asarray(np.floor(255.0 * np.clip(color, 0.0, 1.0) + 0.5) / 255.0, np.float64)
