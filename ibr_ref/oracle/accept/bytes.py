@@ -1,0 +1,22 @@
+"""Colours as ports hand them in: bytes or floats."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.accept.bounded import Bounded
+
+
+def allows_color(color: Bounded, found: NDArray[np.generic]) -> NDArray[np.bool_]:
+    """Whether each number of a picture is legal where the shader's output is `color`.
+
+    A byte k may stand for any number of which 255 c, clamped to [0, 255], is no farther from k than the device's conversion
+    allows; the interval's ends are moved by the clamp, not beyond.
+    """
+    if found.dtype != np.uint8:
+        return color.allows(found.astype(np.float64))
+    steps = found.astype(np.float64)
+    low, high = (255.0 * np.clip(end, 0.0, 1.0) for end in (color.low, color.high))
+    slack = color.device.byte + 255.0 * 2.0**-24  # 255 c is a float32 product
+    return np.asarray((steps >= low - slack) & (steps <= high + slack), np.bool_)

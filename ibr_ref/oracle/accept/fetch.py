@@ -1,0 +1,107 @@
+"""Fetches whose position is not exact: every value that the texture has where the device may look.
+
+A bilinear fetch is a continuous function of its position, affine along each axis within a cell between four texel centres.
+So within one cell it moves by at most the cell's steepest side along each axis times the move; where the box of possible
+positions reaches into other cells, its extremes lie on the corners of the box and where cell borders cut it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.accept.bounded import Bounded, exact
+from ibr_ref.oracle.device import UNIT
+
+Floats = NDArray[np.float64]
+
+FILTER_ROUNDINGS = 8.0
+"""Of a filter in float arithmetic: two nested lerps, each 1 - f, two products and a sum on numbers no larger than the
+largest texel, and one rounding of the texel itself."""
+
+
+@dataclass(frozen=True, eq=False)
+class Texture:
+    """(H, W) or (H, W, C) texels and how coordinates outside are wrapped."""
+
+    texels: Floats
+    repeat: bool = False
+
+    def at(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Floats:
+        """Texels by index, after the wrap mode."""
+        height, width = self.texels.shape[:2]
+        if self.repeat:
+            rows, columns = rows % height, columns % width
+        return np.asarray(self.texels[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)])
+
+    def cell(self, x: Floats, y: Floats) -> tuple[list[Floats], Floats, Floats]:
+        """The four texels (00, 10, 01, 11; x first) around x = u W - 0.5, y = v H - 0.5, and the fractions."""
+        x0, y0 = np.floor(x), np.floor(y)
+        columns, rows = x0.astype(np.int64), y0.astype(np.int64)
+        corners = [self.at(rows + i, columns + j) for i in (0, 1) for j in (0, 1)]
+        return corners, self._spread(x - x0), self._spread(y - y0)
+
+    def bilinear(self, x: Floats, y: Floats) -> Floats:
+        """The reference's fetch at x = u W - 0.5, y = v H - 0.5."""
+        (t00, t10, t01, t11), f, g = self.cell(x, y)
+        return _lerp(_lerp(t00, t10, f), _lerp(t01, t11, f), g)
+
+    def _spread(self, fraction: Any) -> Any:
+        return fraction[..., None] if self.texels.ndim == 3 else fraction
+
+
+def fetch(texture: Texture, u: Bounded, v: Bounded) -> Bounded:
+    """A bilinear fetch at coordinates (n,) that may be off; the result is (n,) or (n, C)."""
+    device = u.device
+    height, width = texture.texels.shape[:2]
+    half = exact(0.5, device)
+    x, y = u * exact(float(width), device) - half, v * exact(float(height), device) - half
+    off_x, off_y = (_finite(c.error + device.weight_step) for c in (x, y))
+    at_x, at_y = (np.where(np.isfinite(c.value), c.value, 0.0) for c in (x, y))
+    (t00, t10, t01, t11), f, g = texture.cell(at_x, at_y)
+    value = _lerp(_lerp(t00, t10, f), _lerp(t01, t11, f), g)
+    slope_x = np.maximum(np.abs(t10 - t00), np.abs(t11 - t01))
+    slope_y = np.maximum(np.abs(t01 - t00), np.abs(t11 - t10))
+    error = slope_x * texture._spread(off_x) + slope_y * texture._spread(off_y)
+    crossing = (np.floor(at_x - off_x) != np.floor(at_x + off_x)) | (np.floor(at_y - off_y) != np.floor(at_y + off_y))
+    if crossing.any():
+        error[crossing] = _spread_around(texture, *(a[crossing] for a in (at_x, at_y, off_x, off_y, value)))
+    largest = np.max(np.abs(texture.texels))
+    rounding = FILTER_ROUNDINGS * device.operation * UNIT * largest
+    return Bounded(value, error + rounding, device)
+
+
+def _finite(error: Floats) -> Floats:
+    return np.where(np.isfinite(error), error, 1e9)
+
+
+def _spread_around(texture: Texture, x: Floats, y: Floats, off_x: Floats, off_y: Floats, value: Floats) -> Floats:
+    """The largest difference from `value` in the boxes around x, y."""
+    error = np.zeros_like(value)
+    for at_x in _stations(x, off_x):
+        for at_y in _stations(y, off_y):
+            error = np.maximum(error, np.abs(texture.bilinear(at_x, at_y) - value))
+    wide = (off_x >= 0.5) | (off_y >= 0.5)  # more than one border may cut the box
+    return np.where(texture._spread(wide), np.ptp(texture.texels), error)
+
+
+def _stations(x: Floats, off: Floats) -> tuple[Floats, Floats, Floats]:
+    """Both ends of the interval, and the cell border between them if there is one."""
+    low, high = x - off, x + off
+    return low, np.maximum(np.floor(high), low), high
+
+
+def texels_near(count: int, u: Bounded, repeat: bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The first and last texel index that a nearest fetch may take along an axis of `count` texels, before the wrap mode."""
+    x = u * exact(float(count), u.device)
+    low, high = (np.floor(np.clip(end, -1e9, 1e9)).astype(np.int64) for end in (x.low, x.high))
+    if repeat:
+        return low, high
+    return np.clip(low, 0, count - 1), np.clip(high, 0, count - 1)
+
+
+def _lerp(a: Floats, b: Floats, f: Floats) -> Floats:
+    return a * (1.0 - f) + b * f

@@ -1,0 +1,41 @@
+"""A case: a scene that a port is asked to draw, with everything that it needs for that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from ibr_ref import displacement, shadows, splatting
+from ibr_ref.io import Frame
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Case:
+    """A scene, its parameters and what else a port is given."""
+
+    name: str
+    """"displacement-box": the name of its folder."""
+    method: str
+    """displacement | splatting | shadows."""
+    kind: str
+    """easy | typical | adversarial | real-sized."""
+    about: str
+    """What it tries, in a sentence."""
+    profile: str
+    """The loosest device profile under which at most 0.5 % of its pixels are undecided."""
+    scene: Any
+    """The method's Scene."""
+    params: Any
+    """The method's Params."""
+    inputs: dict[str, Any] = field(default_factory=dict)
+    """What else is given: "maps" (shadows.Maps), "normals" (uint8 (H, W, 3), one an image, of splatting)."""
+
+    @cached_property
+    def frame(self) -> Frame:
+        """What the reference draws, with all stages."""
+        if self.method == "displacement":
+            return displacement.render(self.scene, self.params)
+        if self.method == "splatting":
+            return splatting.render(self.scene, self.params)
+        return shadows.render(self.scene, self.params, maps=self.inputs.get("maps"))

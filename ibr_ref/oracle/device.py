@@ -1,0 +1,185 @@
+"""Devices: what an API's specification lets a correct port do differently, each number with the clause that grants it.
+
+`PROFILES` are ordered from the tightest to the loosest; a port that one of them explains is right. Errors are relative, in
+units of 2^-24 (half a unit in the last place of a float32, the error of one correct rounding).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+
+UNIT = 2.0**-24
+"""Largest relative error of one correct rounding to float32: IEEE 754-2019, section 4.3.1, 24 significant bits."""
+TINY = 2.0**-126
+"""Smallest normal float32: results below it may be flushed to zero. IEEE 754-2019, table 3.5; Vulkan 1.3, "Precision and
+Operation of SPIR-V Instructions": denormals may be flushed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Device:
+    """The freedom of one profile. Products may be fused into sums, and sums taken in any order, under every profile."""
+
+    name: str
+    operation: float
+    """Relative error of +, - and *, in units of 2^-24."""
+    quotient: float
+    """Relative error of a quotient, in units of 2^-24."""
+    root: float
+    """Relative error of a square root, in units of 2^-24."""
+    weight_step: float
+    """Steps of bilinear weights, in [0, 1]; a weight may be off by less than one. 0: weights are floats."""
+    subpixel_bits: int
+    """Fractional bits of window positions."""
+    subpixel_any: bool
+    """A position may go to either neighbour on the raster; else to the nearest, ties to even, as the reference's."""
+    unsnapped: bool
+    """Varyings may be interpolated over the triangle of the unsnapped corners."""
+    depth_step: float
+    """Steps of the depth buffer. 0: float32."""
+    byte: float
+    """How far a stored byte may be from 255 c, in steps: 0.5 is the nearest."""
+    sources: dict[str, str] = field(default_factory=dict)
+    """For each number the clause that grants it."""
+
+    def __post_init__(self) -> None:
+        missing = {f.name for f in fields(self)} - {"name", "sources"} - set(self.sources)
+        if missing:
+            raise ValueError(
+                f"sources: {self.name} states no source for {sorted(missing)}, allowed: one for every number"
+            )
+
+    @property
+    def snap(self) -> float:
+        """How far a snapped position may lie from where the reference's lies, in pixels, besides its own rounding."""
+        return 2.0**-self.subpixel_bits if self.subpixel_any else 0.0
+
+
+_OPENGL = (
+    "OpenGL 4.6, 2.3.4: results are accurate to about 1 part in 10^5; GLSL 4.60, 4.7.1 is tighter for precise code"
+)
+_VULKAN = 'Vulkan 1.3, appendix "Precision and Operation of SPIR-V Instructions"'
+_WGSL = "WGSL, section 15.7.4 (accuracy of concrete floating point expressions)"
+_D3D = "Direct3D 11.3 functional specification"
+
+IEEE32 = Device(
+    name="ieee32",
+    operation=1.0,
+    quotient=1.0,
+    root=1.0,
+    weight_step=0.0,
+    subpixel_bits=8,
+    subpixel_any=False,
+    unsnapped=False,
+    depth_step=0.0,
+    byte=0.5,
+    sources={
+        "operation": "IEEE 754-2019, 4.3: correctly rounded",
+        "quotient": "IEEE 754-2019, 5.4.1: division is correctly rounded",
+        "root": "IEEE 754-2019, 5.4.1: squareRoot is correctly rounded",
+        "weight_step": "a filter written out in float32 arithmetic",
+        "subpixel_bits": "the conventions of this reference: 1/256 pixel",
+        "subpixel_any": "the conventions of this reference: nearest, ties to even",
+        "unsnapped": "the conventions of this reference: barycentrics of the snapped positions",
+        "depth_step": "IEEE 754-2019: a float32 depth buffer",
+        "byte": "the conventions of this reference: floor(255 c + 0.5)",
+    },
+)
+
+D3D11 = Device(
+    name="d3d11",
+    operation=2.0,
+    quotient=2.0,
+    root=2.0,
+    weight_step=2.0**-8,
+    subpixel_bits=8,
+    subpixel_any=True,
+    unsnapped=False,
+    depth_step=2.0**-24,
+    byte=0.6,
+    sources={
+        "operation": f"{_D3D}, 3.1.2: add, sub, mul within 1 ULP of the infinitely precise result",
+        "quotient": f"{_D3D}, 3.1.2 and 22.10: div within 1 ULP",
+        "root": f"{_D3D}, 22.10: sqrt within 1 ULP",
+        "weight_step": f"{_D3D}, 7.18.8 and 3.2.4.1: 8 fractional bits of filter weights",
+        "subpixel_bits": f"{_D3D}, 3.4.1 and 15.4: 16.8 fixed point window positions",
+        "subpixel_any": f"{_D3D}, 3.2.4.1: conversion to fixed point within 0.6 ULP of the target",
+        "unsnapped": f"{_D3D}, 15.4: vertices are snapped before the triangle is set up",
+        "depth_step": f"{_D3D}, 17.7: D24_UNORM",
+        "byte": f"{_D3D}, 3.2.3.6: float to UNORM within 0.6 ULP",
+    },
+)
+
+VULKAN = Device(
+    name="vulkan",
+    operation=1.0,
+    quotient=5.0,
+    root=9.0 + 2.0**-18,
+    weight_step=2.0**-8,
+    subpixel_bits=8,
+    subpixel_any=True,
+    unsnapped=False,
+    depth_step=2.0**-24,
+    byte=1.0,
+    sources={
+        "operation": f"{_VULKAN}: OpFAdd, OpFSub, OpFMul correctly rounded",
+        "quotient": f"{_VULKAN}: OpFDiv 2.5 ULP",
+        "root": f"{_VULKAN}: sqrt inherited from 1.0 / inversesqrt, 2 ULP and 2.5 ULP",
+        "weight_step": "Vulkan 1.3, limits: subTexelPrecisionBits, 8 on desktop implementations (at least 4)",
+        "subpixel_bits": "Vulkan 1.3, limits: subPixelPrecisionBits, 8 on desktop implementations (at least 4)",
+        "subpixel_any": "Vulkan 1.3, 28.7: the rounding to subPixelPrecisionBits is not specified",
+        "unsnapped": "Vulkan 1.3, 28.9.1: interpolation by the areas of the rasterized polygon",
+        "depth_step": "Vulkan 1.3, 34.5: VK_FORMAT_D24_UNORM_S8_UINT, X8_D24",
+        "byte": "Vulkan 1.3, 3.7.4: conversion to fixed point may give either neighbour (the nearest is preferred)",
+    },
+)
+
+WEBGPU = Device(
+    name="webgpu",
+    operation=1.0,
+    quotient=5.0,
+    root=9.0 + 2.0**-18,
+    weight_step=2.0**-8,
+    subpixel_bits=8,
+    subpixel_any=True,
+    unsnapped=True,
+    depth_step=2.0**-24,
+    byte=1.0,
+    sources={
+        "operation": f"{_WGSL}: x + y, x - y, x * y correctly rounded",
+        "quotient": f"{_WGSL}: x / y 2.5 ULP",
+        "root": f"{_WGSL}: sqrt inherited from 1.0 / inverseSqrt, 2 ULP and 2.5 ULP",
+        "weight_step": "WebGPU leaves filtering to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan",
+        "subpixel_bits": "WebGPU leaves it to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan",
+        "subpixel_any": "WebGPU, 23.2.4: rasterization gives no rounding of positions",
+        "unsnapped": "WebGPU, 23.2.5: interpolation by barycentric coordinates, the positions' precision not said",
+        "depth_step": "WebGPU, 26.1.1: depth24plus may have 24 bits unorm",
+        "byte": "WebGPU leaves conversion to the API below: either neighbour",
+    },
+)
+
+GL = Device(
+    name="gl",
+    operation=5.0 + 2.0**-18,
+    quotient=11.0,
+    root=11.0,
+    weight_step=2.0**-8,
+    subpixel_bits=8,
+    subpixel_any=True,
+    unsnapped=True,
+    depth_step=2.0**-24,
+    byte=1.0,
+    sources={
+        "operation": f"{_OPENGL}; taken here as a rounding and 2 ULP",
+        "quotient": f"{_OPENGL}; taken here as a reciprocal and a product, each a rounding and 2 ULP",
+        "root": f"{_OPENGL}; taken here as an inverse root and a reciprocal, each a rounding and 2 ULP",
+        "weight_step": "OpenGL 4.6, 8.14.2 gives no precision of weights; 8 bits on desktop implementations",
+        "subpixel_bits": "OpenGL 4.6, table 23.64: SUBPIXEL_BITS at least 4, 8 on desktop implementations",
+        "subpixel_any": "OpenGL 4.6, 14.6.1: the rounding of window positions is not specified",
+        "unsnapped": "OpenGL 4.6, 14.6.1: interpolation by areas of the triangle, whether snapped is not said",
+        "depth_step": "OpenGL 4.6, 13.8.1: window depth may be fixed point; DEPTH_COMPONENT24",
+        "byte": "OpenGL 4.6, 2.3.5.2: conversion to unsigned normalized may give either neighbour",
+    },
+)
+
+PROFILES: dict[str, Device] = {device.name: device for device in (IEEE32, D3D11, VULKAN, WEBGPU, GL)}
+"""By name, the tightest first."""

@@ -1,0 +1,95 @@
+"""What a referee says of one stage of a port."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.device import Device
+
+Bools = NDArray[np.bool_]
+Handed = Mapping[str, Any]
+"""A port's arrays by their names in the contract, checked for shape and dtype: "color" (H, W, 3) uint8 or floats, "depth",
+and any of the stages; an atlas as a tuple of pages."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Judgement:
+    """One stage, element by element. Elements are pixels, (H, W), or vertices, texels, control points."""
+
+    stage: str
+    """As the method names it; "image" is the final picture and depth judged from the case alone."""
+    element: str
+    """What an element is: "pixel", "vertex", "texel", "control point"."""
+    arrays: tuple[str, ...]
+    """The port's arrays that were compared."""
+    replayed: tuple[str, ...] = ()
+    """The port's own arrays that the stage was fed with; what is missing came from the reference, with its bounds."""
+    wrong: Bools
+    """No legal outcome agrees with what the port has."""
+    undecided: Bools
+    """A legal alternative differs by more than one step of the search lattice, or shows in the final image."""
+    width: NDArray[np.float64]
+    """Width of the accepted set of continuous results (the widest of the element's numbers); NaN where there is none."""
+    blame: NDArray[np.int8]
+    """Index in `arrays` of the first one that disagrees; -1 where nothing does."""
+
+    def __post_init__(self) -> None:
+        shapes = {a.shape for a in (self.wrong, self.undecided, self.width, self.blame)}
+        if len(shapes) != 1:
+            raise ValueError(f"judgement of {self.stage}: arrays of different shapes {sorted(shapes)}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class TraceRow:
+    """One fetch, comparison or result in the computation of one element."""
+
+    step: str
+    """"linear search, sample 4: h < H"."""
+    reference: str
+    """What the reference has."""
+    port: str
+    """What the port has, or what it would have to have had; empty where it did not hand that in."""
+    margin: float | None = None
+    """How close a comparison came to the other outcome."""
+    bound: float | None = None
+    """The most that the device's freedom can move it; smaller than the margin: the decision is certain."""
+    note: str = ""
+    """"certain", "either way is legal", "differs"."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """A continuous parameter of a case, for the regression of small systematic errors."""
+
+    name: str
+    """As the case has it: "light.ambient"."""
+    value: float
+    step: float
+    """Of the symmetric difference quotient."""
+    moved: Callable[[float], Case]
+    """The case with another value."""
+
+
+class Referee(Protocol):
+    """A method's judge."""
+
+    stages: Sequence[str]
+    """In the order of the pipeline, without "image"."""
+
+    def judge_stages(self, case: Case, device: Device, handed: Handed) -> list[Judgement]:
+        """Every stage of which an array is handed in, in order, each fed with the port's own arrays of the stages before."""
+
+    def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
+        """The final colour, and depth where it is handed in, from the case alone."""
+
+    def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
+        """The computation of one element of a stage, reference and port side by side."""
+
+    def parameters(self, case: Case) -> list[Parameter]:
+        """The continuous parameters that move the image."""
