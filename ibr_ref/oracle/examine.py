@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -33,12 +33,19 @@ class Examination:
         return next((j for j in self.judgements if j.stage == stage), None)
 
 
-@dataclass(eq=False)
+def judge(case: Case, handed: Handed, device: Device) -> list[Judgement]:
+    """All that one device allows: the stages in order, each on the port's own inputs, then "image" if a colour is there."""
+    method = referee(case.method)
+    judgements = method.judge_stages(case, device, handed)
+    return [*judgements, method.judge_image(case, device, handed)] if "color" in handed else judgements
+
+
+@dataclass(frozen=True, eq=False)
 class _Trial:
     """All judgements by one device."""
 
     device: Device
-    judgements: list[Judgement] = field(default_factory=list)
+    judgements: list[Judgement]
 
     @property
     def wrong(self) -> int:
@@ -97,23 +104,15 @@ def _unusable(case: Case, reasons: tuple[str, ...]) -> Verdict:
 
 def _trials(case: Case, handed: Handed, devices: Sequence[Device]) -> list[_Trial]:
     """The last one is what the verdict rests on: the first that leaves nothing unexplained, or the loosest of all."""
-    loosest = _trial(case, handed, devices[-1])
-    if loosest.wrong or len(devices) == 1:
+    loosest = _Trial(devices[-1], judge(case, handed, devices[-1]))
+    if loosest.wrong:
         return [loosest]
     trials = []
     for device in devices[:-1]:
-        trials.append(_trial(case, handed, device))
+        trials.append(_Trial(device, judge(case, handed, device)))
         if not trials[-1].wrong:
             return trials
     return [*trials, loosest]
-
-
-def _trial(case: Case, handed: Handed, device: Device) -> _Trial:
-    judge = referee(case.method)
-    judgements = judge.judge_stages(case, device, handed)
-    if "color" in handed:
-        judgements = [*judgements, judge.judge_image(case, device, handed)]
-    return _Trial(device, judgements)
 
 
 def _first_wrong(judgements: Sequence[Judgement]) -> Judgement | None:
