@@ -129,3 +129,9 @@ def _try_mutant(method: str, mutant: Mutant, cases: Sequence[Case]) -> MutantRes
 def _cases(method: str, kinds: Sequence[str] | None) -> list[Case]:
     cases = [build(name) for name in names(method)]
     return [case for case in cases if kinds is None or case.kind in kinds]
+
+
+def size(methods: Sequence[str]) -> int:
+    """How many variants and mutants the methods have."""
+    modules = [import_module(f"ibr_ref.oracle.ports.{method}") for method in methods]
+    return sum(len(module.VARIANTS) + len(module.MUTANTS) for module in modules)
