@@ -78,15 +78,9 @@ def _mutant_table(results: Sequence[MutantResult]) -> Table:
 def _totals(method: str, variants: Sequence[VariantResult], mutants: Sequence[MutantResult]) -> str:
     mine = [m for m in mutants if m.method == method]
     right = [v for v in variants if v.method == method]
-    killed, named, seen = (
-        sum(test)
-        for test in (
-            [m.case is not None for m in mine],
-            [m.stage_right for m in mine],
-            [m.image_case is not None for m in mine],
-        )
-    )
+    killed = sum(m.case is not None for m in mine)
+    named, seen = sum(m.stage_right for m in mine), sum(m.image_case is not None for m in mine)
     return (
-        f"{method}: {sum(not v.accused for v in right)} of {len(right)} right ports passed; {killed} of {len(mine)} broken ones "
-        f"killed with stages, in {named} of them the stage was right; {seen} by the image alone."
+        f"{method}: {sum(not v.accused for v in right)} of {len(right)} right ports passed; {killed} of {len(mine)} broken "
+        f"ones killed with stages, in {named} of them the stage was right; {seen} by the image alone."
     )
