@@ -118,6 +118,3 @@ def _check_same(where: str, found: Any, allowed: Any) -> None:
             _check_same(f"{where}[{i}]", *pair)
     elif found != allowed:
         raise UnusableError(where, found, f"{allowed}, which the rest of the case makes of it")
-
-
-__all__ = ["changed_stages", "load_case"]

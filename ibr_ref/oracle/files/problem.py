@@ -18,6 +18,11 @@ class Problem:
     found: str
     allowed: str
 
+    def __post_init__(self) -> None:
+        for name in ("file", "found", "allowed"):  # names of files need not be text
+            text = getattr(self, name).encode("utf-8", "backslashreplace").decode()
+            object.__setattr__(self, name, text)
+
     def __str__(self) -> str:
         return f"{self.file}: found {self.found}, allowed: {self.allowed}"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, TypeAdapter
@@ -84,6 +85,11 @@ _INPUTS: dict[str, tuple[str, ...]] = {"displacement": (), "splatting": ("normal
 def schema() -> dict[str, Any]:
     """The JSON Schema of `case.json`."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": FORMAT, **ADAPTER.json_schema()}
+
+
+def schema_text() -> str:
+    """The same as it is shipped, in `case.schema.json` beside this module."""
+    return (Path(__file__).parent / "case.schema.json").read_text(encoding="utf-8")
 
 
 def describe(case: Case) -> tuple[Document, Inputs]:
