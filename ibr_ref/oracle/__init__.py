@@ -22,7 +22,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ibr_ref.oracle.cases import Case, build, names
     from ibr_ref.oracle.device import PROFILES, Device
+    from ibr_ref.oracle.check import check
     from ibr_ref.oracle.examine import Examination, examine
+    from ibr_ref.oracle.files import Submission, export, load_case, load_submission, submission_from_arrays
     from ibr_ref.oracle.report import write as write_report
     from ibr_ref.oracle.verdict import Outcome, Verdict
 
@@ -33,9 +35,15 @@ _HOMES = {
     "Examination": "examine",
     "Outcome": "verdict",
     "Verdict": "verdict",
+    "Submission": "files",
     "build": "cases",
+    "check": "check",
     "examine": "examine",
+    "export": "files",
+    "load_case": "files",
+    "load_submission": "files",
     "names": "cases",
+    "submission_from_arrays": "files",
 }
 
 __all__ = [
@@ -44,10 +52,16 @@ __all__ = [
     "Device",
     "Examination",
     "Outcome",
+    "Submission",
     "Verdict",
     "build",
+    "check",
     "examine",
+    "export",
+    "load_case",
+    "load_submission",
     "names",
+    "submission_from_arrays",
     "write_report",
 ]
 
