@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+import numpy as np
+
 from ibr_ref.oracle.ports.arithmetic import Arithmetic, Policy
 from ibr_ref.oracle.ports.splatting.atlas import Atlas
 from ibr_ref.oracle.ports.splatting.normals import Normals
@@ -32,7 +34,10 @@ class Port:
 
     def render(self) -> dict[str, Any]:
         """All arrays of the contract but for `raster.margin`; those of the atlas are tuples, one array a page."""
-        context = self.arithmetic(self.policy), self.scene, self.params
+        with np.errstate(all="ignore"):  # a device knows no traps
+            return self._arrays(self.arithmetic(self.policy), self.scene, self.params)
+
+    def _arrays(self, *context: Any) -> dict[str, Any]:
         codes = [self.normals(*context).codes(image) for image in self.scene.images]
         atlas = self.atlas(*context).arrays(codes)
         vertices = self.vertex(*context).arrays(atlas, self.inputs.get("normals", codes))
@@ -41,20 +46,20 @@ class Port:
         return {**atlas, **vertices, **raster, "color": color, "depth": raster["raster.depth"]}
 
 
+_STAGES: dict[str, type[Stage]] = {
+    "normals": Normals,
+    "atlas": Atlas,
+    "vertex": Vertex,
+    "raster": Raster,
+    "resolve": Resolve,
+}
+
+
+def replaced_stage(stage: type[Stage]) -> str:
+    """The name of the stage that a class takes the place of."""
+    return next(name for name, standard in _STAGES.items() if issubclass(stage, standard))
+
+
 def with_stage(stage: type[Stage]) -> type[Port]:
     """The port with one stage replaced."""
-    for name, standard in stages().items():
-        if issubclass(stage, standard):
-            return type(stage.__name__, (Port,), {name: stage})
-    raise TypeError(f"{stage.__name__} is no stage")
-
-
-def stages() -> dict[str, type[Stage]]:
-    """The five stages of the port, by name."""
-    return {
-        "normals": Normals,
-        "atlas": Atlas,
-        "vertex": Vertex,
-        "raster": Raster,
-        "resolve": Resolve,
-    }
+    return type(stage.__name__, (Port,), {replaced_stage(stage): stage})
