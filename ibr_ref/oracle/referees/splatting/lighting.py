@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, power, total, unit, uploaded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.referees.splatting.place import either
 
 Bools = NDArray[np.bool_]
 Vector = Sequence[Bounded]
@@ -91,7 +92,7 @@ def _mirrored(normal: Vector, light: Vector, eye: Vector, facing: Bounded) -> Bo
     reflected = [twice * n - l for n, l in zip(normal, light, strict=True)]
     cosine = dot(reflected, eye)
     other = twice * dot(normal, eye) - dot(light, eye)
-    return Bounded(cosine.value, np.maximum(cosine.error, other.error), facing.device)
+    return either(cosine, other)
 
 
 def _colors(light: Any, facing: Bounded, shine: Bounded, albedo: Bounded) -> Bounded:

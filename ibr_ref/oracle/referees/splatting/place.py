@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -56,7 +57,7 @@ def placed(case: Case, device: Device, points: Table) -> Placed:
     world = world_points(case, device, points)
     camera = case.scene.camera
     view = transform(camera.view_from_world, world, device)[:3]
-    clip = transform(camera.clip_from_view, view, device)
+    clip = _clip(case, device, points, world, view)
     x, y = (clip[axis] / clip[3] for axis in (0, 1))
     one = exact(1.0, device)
     kept, doubtful = _kept(case, device, view, clip)
@@ -92,11 +93,29 @@ def _row(row: NDArray[np.float64], point: Vector, device: Device) -> Bounded:
     return total(terms) if len(terms) > 1 else terms[0]
 
 
+def _clip(case: Case, device: Device, points: Table, world: Vector, view: Vector) -> list[Bounded]:
+    """One matrix after another, as the conventions have it; or two or all three multiplied together on the host."""
+    camera = case.scene.camera
+    clip = transform(camera.clip_from_view, view, device)
+    two = transform(camera.clip_from_world, world, device)
+    parts = []
+    for image, share in zip(case.scene.images, points.shares, strict=True):
+        own = view_points(image.camera, points.columns[share], points.rows[share], points.depth[share])
+        parts.append(transform(camera.clip_from_world @ image.camera.world_from_view, own, device))
+    three = [joined([part[i] for part in parts]) for i in range(4)]
+    return [either(*orders) for orders in zip(clip, two, three, strict=True)]
+
+
+def either(first: Bounded, *others: Bounded) -> Bounded:
+    """The same number by other formulas: the first one's value, and the largest error."""
+    error = reduce(np.maximum, [other.error for other in (first, *others)])
+    return Bounded(first.value, error, first.device)
+
+
 def world_points(case: Case, device: Device, points: Table) -> list[Bounded]:
     """x, y, z (V,) of all points in world space."""
     parts = []
-    for i, image in enumerate(case.scene.images):
-        share = points.share(i)
+    for image, share in zip(case.scene.images, points.shares, strict=True):
         view = view_points(image.camera, points.columns[share], points.rows[share], points.depth[share])
         parts.append(transform(image.camera.world_from_view[:3], view, device))
     return [joined([part[axis] for part in parts]) for axis in range(3)]
@@ -110,6 +129,9 @@ def view_points(camera: Any, columns: ArrayLike, rows: ArrayLike, depth: Bounded
     y = _over(v - uploaded(c_y, device), f_y)
     from_center = u - uploaded(c_x, device)
     x = _over(from_center if skew == 0.0 else total([u, -uploaded(c_x, device), -(uploaded(skew, device) * y)]), f_x)
+    # Or by the inverse matrix, ((1/f_x, -s/(f_x f_y), ...), (0, 1/f_y, -c_y/f_y)), made on the host.
+    x = either(x, _by_row((1.0 / f_x, -skew / (f_x * f_y), (skew * c_y / f_y - c_x) / f_x), u, v))
+    y = either(y, _by_row((0.0, 1.0 / f_y, -c_y / f_y), u, v))
     if camera.perspective:
         x, y = x * depth, y * depth
     return [x, -y, -depth]
@@ -117,8 +139,13 @@ def view_points(camera: Any, columns: ArrayLike, rows: ArrayLike, depth: Bounded
 
 def _over(a: Bounded, b: float) -> Bounded:
     """a / b; or times 1 / b, rounded and uploaded, as ports do that divide by the same number for all points."""
-    quotient, product = a / uploaded(b, a.device), a * uploaded(1.0 / b, a.device)
-    return Bounded(quotient.value, np.maximum(quotient.error, product.error), a.device)
+    return either(a / uploaded(b, a.device), a * uploaded(1.0 / b, a.device))
+
+
+def _by_row(row: tuple[float, float, float], u: Bounded, v: Bounded) -> Bounded:
+    """A row of a (3, 3) matrix applied to (u, v, 1)."""
+    terms = [uploaded(a, u.device) * b for a, b in zip(row, (u, v), strict=False) if a != 0.0]
+    return total([*terms, uploaded(row[2], u.device)])
 
 
 def joined(parts: Sequence[Bounded]) -> Bounded:
@@ -133,7 +160,7 @@ def _window(ndc: Bounded, from_border: Bounded, size: int) -> Bounded:
     scaled, half = from_border * exact(0.5 * size, device), exact(0.5 * size, device)
     viewport = total([ndc * half, exact(np.full_like(ndc.value, 0.5 * size), device)])
     value = from_border.value / 2.0 * float(size)
-    return Bounded(value, np.maximum(scaled.error, viewport.error), device)
+    return either(Bounded(value, scaled.error, device), viewport)
 
 
 def _minus_one(case: Case, device: Device, view: Vector, clip: Vector) -> Bounded:
@@ -148,7 +175,7 @@ def _window_depth(case: Case, device: Device, view: Vector, clip: Vector) -> Bou
         return depth
     half = exact(0.5, device)
     other = half * (_minus_one(case, device, view, clip) / clip[3]) + half
-    return Bounded(depth.value, np.maximum(depth.error, other.error), device)
+    return either(depth, other)
 
 
 def _kept(case: Case, device: Device, view: Vector, clip: Vector) -> tuple[Bools, Bools]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -36,9 +37,10 @@ class Table:
     fed: tuple[str, ...]
     """The port's own arrays that are in here."""
 
-    def share(self, image: int) -> slice:
-        """The rows of one image's points."""
-        return slice(int(self.starts[image]), int(self.starts[image + 1]))
+    @property
+    def shares(self) -> list[slice]:
+        """The rows of each image's points."""
+        return [slice(first, stop) for first, stop in pairwise(self.starts.tolist())]
 
 
 def table(case: Case, device: Device, handed: Handed | None = None) -> Table:
