@@ -105,7 +105,19 @@ def shelves() -> Case:
     view = looking((2.0, -2.0, 2.0), size=(96, 72), vertical_fov=50.0)
     about = "Seven images of noise on three pages of the atlas, one of them twice: all of its points tie."
     scene = Scene(images=[*images, images[1]], camera=view, light=None, background=(0.3, 0.6, 0.2))
-    return case("shelves", "adversarial", about, "ieee32", scene, Params(alpha=3.25, min_width=3.25, max_atlas_size=32))
+    return case("shelves", "adversarial", about, "ieee32", scene, Params(alpha=3.25, max_atlas_size=32))
+
+
+def terraces() -> Case:
+    """Depths in eighths and thirty-seconds, floats all of them: neighbours that are as near as each other."""
+    camera = parallel((0.6, -0.5, 8.0), size=(40, 28), view_height=2.0)
+    levels = np.kron(np.floor(4.0 * noise(7, 10, seed=3)), np.ones((4, 4)))
+    depth = 7.5 + 0.125 * levels + 0.03125 * np.floor(3.0 * noise(28, 40, seed=4))
+    view = looking((1.1, -1.5, 5.1), size=(96, 72), vertical_fov=30.0)
+    light = Light(position=(1.0, 2.0, 6.0), ambient=0.2, diffuse=0.7, specular=0.2, exponent=5)
+    scene = Scene(images=[noisy(camera, depth)], camera=view, light=light, background=(0.0, 0.1, 0.0))
+    about = "Terraces of exact depths: which neighbour a normal takes is a matter of ties, right and down."
+    return case("terraces", "adversarial", about, "ieee32", scene, Params(alpha=2.75))
 
 
 def among() -> Case:
@@ -133,7 +145,8 @@ def dust() -> Case:
     view = looking((1.0, -1.9, 0.8), size=(96, 72))
     light = Light(direction=(1.0, -2.0, 1.0), ambient=0.1, specular=0.3, exponent=32)
     law = Params(alpha=1.0, beta=0.25, gamma=0.1, delta=0.3, min_width=0.25, max_width=1.5)
-    scene = Scene(images=[painted(camera, ball_depths(camera))], camera=view, light=light, background=(0.3, 0.3, 0.3))
+    image = painted(camera, ball_depths(camera), in_bytes=False)
+    scene = Scene(images=[image], camera=view, light=light, background=(0.3, 0.3, 0.3))
     about = "A ball of splats smaller than a pixel, seen at a grazing angle, by a law that reaches both of its limits."
     return case("dust", "adversarial", about, "ieee32", scene, law)
 
@@ -149,7 +162,8 @@ def kettle() -> Case:
 
 
 CASES: dict[str, Callable[[], Case]] = {
-    f"splatting-{build.__name__}": build for build in (ball, lamp, discs, sprites, quads, shelves, among, dust, kettle)
+    f"splatting-{build.__name__}": build
+    for build in (ball, lamp, discs, sprites, quads, shelves, terraces, among, dust, kettle)
 }
 """By name."""
 
@@ -190,12 +204,13 @@ def noise(*shape: int, seed: int) -> Floats:
     return np.random.RandomState(seed).random_sample(shape)
 
 
-def painted(camera: Camera, depth: Floats) -> DepthImage:
-    """A reference image in smooth colours, bytes as they come from files, off its mask too."""
+def painted(camera: Camera, depth: Floats, *, in_bytes: bool = True) -> DepthImage:
+    """A reference image in smooth colours, bytes as they come from files, or any floats; off its mask too."""
     row, column = np.indices(depth.shape)
     red, green = column / camera.width, row / camera.height
     color = np.stack([0.2 + 0.7 * red, 0.9 - 0.8 * green, 0.3 + 0.2 * red * green], axis=2)
-    return DepthImage(color=_bytes(color), depth=depth, camera=camera, mask=~np.isnan(depth))
+    color = _bytes(color) if in_bytes else color
+    return DepthImage(color=color, depth=depth, camera=camera, mask=~np.isnan(depth))
 
 
 def noisy(camera: Camera, depth: Floats) -> DepthImage:

@@ -58,18 +58,26 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
 
 def _judge_image(case: Case, device: Device, handed: Handed, image: int) -> tuple[NDArray[Any], ...]:
     legal = Codes(surface(case.scene.images[image], device))
+    best = legal.surface.valid.copy()
     # Where the port put the image in its atlas is another stage's matter.
-    best = None
-    for rects in (case.frame.stages["atlas.rects"], handed.get("atlas.rects")):
-        if rects is None:
-            continue
-        codes = cut_out(handed["atlas.normal"], np.asarray(rects)[image])
+    for name, rects in (("reference", case.frame.stages["atlas.rects"]), ("port", handed.get("atlas.rects"))):
+        places = np.zeros((0, 5), np.int64) if rects is None else np.asarray(rects, np.int64)
+        codes = cut_out(handed["atlas.normal"], places[image]) if len(places) else None
         if codes is not None and codes.shape == (*legal.surface.valid.shape, 3):
-            wrong = ~legal.allows(codes.astype(np.float64))
-            best = wrong if best is None or wrong.sum() < best.sum() else best
-    if best is None:
-        best = legal.surface.valid.copy()
+            wrong = ~legal.allows(codes.astype(np.float64)) & ~_overwritten(places, image)
+            best = wrong if name == "reference" or wrong.sum() < best.sum() else best
     return best, legal.undecided, legal.width
+
+
+def _overwritten(rects: Ints, image: int) -> Bools:
+    """(H, W) texels of an image that lie in another one's rectangle too: whose normal is there, nobody can tell."""
+    page, x, y, width, height = rects[image].tolist()
+    result = np.zeros((height, width), np.bool_)
+    for other in np.flatnonzero((rects[:, 0] == page) & (np.arange(len(rects)) != image)):
+        _, left, top, across, down = rects[other].tolist()
+        rows = slice(max(top - y, 0), max(top + down - y, 0))
+        result[rows, max(left - x, 0) : max(left + across - x, 0)] = True
+    return result
 
 
 def surface(image: Any, device: Device) -> Surface:
@@ -95,13 +103,13 @@ def steps(surface: Surface, axis: int) -> Steps:
     for side in (1, -1):
         there = _shifted(surface.valid, axis, side, False) & surface.valid
         other = Bounded(*(_shifted(a, axis, side, 0.0) for a in (surface.depth.value, surface.depth.error)), device)
-        size = (other - surface.depth).absolute()
+        size = _difference(other, surface.depth).absolute()
         margin, off = limit.value - size.value, limit.error + size.error
         sizes[side], usable[side] = size, there & (margin >= 0.0)
         maybe[side] = there & (margin >= -off), there & (margin >= off)
     after, before = sizes[1], sizes[-1]
     first, off = after.value <= before.value, after.error + before.error
-    close = np.abs(after.value - before.value) <= off
+    close = (np.abs(after.value - before.value) <= off) & (off > 0.0)
     (after_maybe, after_sure), (before_maybe, before_sure) = maybe[1], maybe[-1]
     legal = {
         1: after_maybe & (~before_sure | first | close),
@@ -110,6 +118,13 @@ def steps(surface: Surface, axis: int) -> Steps:
     }
     takes_after = usable[1] & (~usable[-1] | first)
     return Steps(legal, np.where(takes_after, 1, np.where(usable[-1], -1, 0)))
+
+
+def _difference(a: Bounded, b: Bounded) -> Bounded:
+    """a - b; exact where all three are floats and the device rounds correctly (IEEE 754-2019, 4.3): ties are ties."""
+    result = a - b
+    floats = (a.error == 0.0) & (b.error == 0.0) & (result.value == result.value.astype(np.float32))
+    return Bounded(result.value, np.where(floats & (a.device.operation <= 1.0), 0.0, result.error), a.device)
 
 
 def _shifted(array: NDArray[Any], axis: int, side: int, outside: Any) -> NDArray[Any]:

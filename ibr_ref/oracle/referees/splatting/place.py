@@ -208,11 +208,19 @@ def splat_width(params: Any, d: Bounded) -> Bounded:
     powers = [(params.beta, d * d), (params.gamma, d)]
     terms = [uploaded(coefficient, device) * power for coefficient, power in powers if coefficient != 0.0]
     terms.append(uploaded(np.full_like(d.value, params.delta), device))
-    width = uploaded(params.alpha, device) / (total(terms) if len(terms) > 1 else terms[0])
+    alpha = uploaded(params.alpha, device)
+    width = alpha / total(terms) if len(terms) > 1 else correctly_rounded(alpha, terms[0])
     least, most = (uploaded(limit, device) for limit in (params.min_width, params.max_width))
     clamped = width.between(params.min_width, params.max_width)
     at_limit = np.where(width.low < params.min_width, least.error, 0.0)
     return clamped.widened(np.maximum(at_limit, np.where(width.high > params.max_width, most.error, 0.0)))
+
+
+def correctly_rounded(a: Bounded, b: Bounded) -> Bounded:
+    """a / b; exact where a, b and the quotient are floats and the device rounds correctly (IEEE 754-2019, 4.3)."""
+    quotient = a / b
+    floats = (a.error == 0.0) & (b.error == 0.0) & (quotient.value == quotient.value.astype(np.float32))
+    return Bounded(quotient.value, np.where(floats & (a.device.quotient <= 1.0), 0.0, quotient.error), a.device)
 
 
 def with_handed(points: Placed, handed: Handed, device: Device) -> tuple[Placed, tuple[str, ...]]:
