@@ -112,7 +112,7 @@ class Raster(Stage):
         return center - half, center + half
 
     def span(self, center: Floats, half: Floats, count: int) -> tuple[Integers, Integers]:
-        """First and last but one of the columns covered, inside the picture: [c − w/2, c + w/2)."""
+        """The first column covered and the first that is not any more, inside the picture: [c − w/2, c + w/2)."""
         low, high = self.borders(center, half)
         first, end = self.first_from(low), self.end_before(high)
         return np.clip(first, 0, count).astype(np.int64), np.clip(end, 0, count).astype(np.int64)
@@ -126,7 +126,7 @@ class Raster(Stage):
         return np.ceil(low - 0.5)
 
     def end_before(self, high: Floats) -> Floats:
-        """The first pixel whose centre does not lie before a border: it is not covered any more."""
+        """The same for the other border, where pixels are not covered any more."""
         return np.ceil(high - 0.5)
 
     def in_disc(self, splats: Splats, fragments: Fragments) -> Bools:
