@@ -39,13 +39,13 @@ def lamp() -> tuple[Scene, Params]:
         for eye, size in zip([(2.6, -2.2, 1.4), (-0.8, -3.2, 1.0)], sizes, strict=True)
     ]
     view = measured((1.2, -2.6, 0.9), size=VIEW, skew=-1.5, error=3e-4)
-    light = Light(position=(1.0, -2.5, 2.0), ambient=0.3, diffuse=0.6, specular=0.6, exponent=12)
+    light = Light(position=(1.0, -2.5, 2.0), ambient=0.2, diffuse=0.8, specular=0.6, exponent=60)
     images = []
     for camera in cameras:
         balls = np.fmin(ball_depths(camera, 0.7), ball_depths(camera, 0.3, (0.9, 0.2, 0.4)))
         ground = plane_depths(camera, (0.0, 0.1, 1.0), -0.6)
         images.append(painted(camera, np.fmin(balls, np.where(ground < 6.0, ground, np.nan))))
-    law = Params(alpha=3.4, beta=0.07, gamma=0.15, delta=0.2, min_width=2.7, max_width=4.2)
+    law = Params(alpha=3.4, beta=0.07, gamma=0.15, delta=0.2, min_width=2.7, max_width=3.4)
     return Scene(images=images, camera=view, light=light, background=(0.2, 0.4, 0.7)), law
 
 
@@ -54,7 +54,7 @@ def sun() -> tuple[Scene, Params]:
     camera = parallel((0.5, -4.0, 3.0), size=(40, 32))
     depth = np.fmin(ball_depths(camera, 0.7), plane_depths(camera, (0.0, 0.1, 1.0), -0.5))
     view = parallel((1.0, -4.0, 2.0), size=VIEW, view_height=2.0)
-    light = Light(direction=(0.8, 0.9, 0.5), ambient=0.2, diffuse=1.0, specular=0.5, exponent=3)
+    light = Light(direction=(0.8, 0.9, 0.5), ambient=0.2, diffuse=1.0, specular=0.5, exponent=40)
     scene = Scene(images=[painted(camera, depth)], camera=view, light=light, background=(0.5, 0.7, 0.9))
     return scene, Params(alpha=12.0, gamma=0.5, max_width=12.0, shape="disc")
 
@@ -81,15 +81,20 @@ def among() -> tuple[Scene, Params]:
     return Scene(images=[image], camera=view, light=light), Params(alpha=7.0, beta=2.0, delta=0.1, max_width=40.0)
 
 
-def terraces() -> tuple[Scene, Params]:
+def terraces(shift: float = 0.0) -> tuple[Scene, Params]:
     """Seen straight from above, without rounding: splats end on the pixels' centres, and those of one terrace tie."""
     camera = parallel((0.0, 0.0, 8.0), size=(48, 32), up=(0, 1, 0), view_height=2.0)
-    view = parallel((0.0, 0.0, 8.0), size=(64, 48), up=(0, 1, 0), view_height=3.0)
+    view = parallel((shift, shift, 8.0), (shift, shift, 0.0), size=(64, 64), up=(0, 1, 0), view_height=4.0)
     levels = np.kron(np.floor(4.0 * noise(8, 12, seed=3)), np.ones((4, 4)))
     depth = 6.0 + 0.125 * levels + 0.03125 * np.floor(3.0 * noise(32, 48, seed=4))
     return Scene(images=[painted(camera, depth)], camera=view, light=None, background=(0.1, 0.2, 0.3)), Params(
         alpha=2.0
     )
+
+
+def ties() -> tuple[Scene, Params]:
+    """The same, 1/512 pixel beside it: every centre lies in the middle between two subpixels."""
+    return terraces(1.0 / 16.0 / 512.0)
 
 
 def dust() -> tuple[Scene, Params]:
@@ -103,5 +108,5 @@ def dust() -> tuple[Scene, Params]:
 
 
 SCENES: dict[str, Callable[[], tuple[Scene, Params]]] = {
-    scene.__name__: scene for scene in (lamp, sun, shelves, among, terraces, dust)
+    scene.__name__: scene for scene in (lamp, sun, shelves, among, terraces, ties, dust)
 }

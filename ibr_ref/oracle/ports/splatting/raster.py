@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ibr_ref.oracle.ports.arithmetic import Floats
 from ibr_ref.oracle.ports.splatting.atlas import Integers
@@ -33,22 +34,39 @@ class Fragments(NamedTuple):
     column: Integers
 
 
+class Buffers(NamedTuple):
+    """What fragments are drawn into; all pixels in one row."""
+
+    winner: NDArray[np.int32]
+    """-1 none."""
+    depth: Floats
+    overdraw: NDArray[np.int32]
+
+
+BATCH = 1 << 16
+"""Splats drawn at a time, so that the fragments of wide ones fit into memory."""
+
+
 class Raster(Stage):
-    """The fixed function."""
+    """The fixed function: coverage is exact, whatever the shaders' arithmetic is."""
 
     def arrays(self, vertices: dict[str, Any]) -> dict[str, Any]:
         """The stage's arrays but for the margin, which is the reference's own."""
         camera = self.scene.camera
+        buffers = self.cleared(camera.height * camera.width)
         splats = self.splats(vertices)
-        fragments = self.fragments(splats)
-        pixel = fragments.row * camera.width + fragments.column
         names = self.names(vertices, splats.vertex)
-        winner, depth = self.tested(pixel, names[fragments.splat], splats.depth[fragments.splat])
+        for first in range(0, len(names), BATCH):
+            batch = slice(first, first + BATCH)
+            fragments = self.fragments(Splats._make(values[batch] for values in splats))
+            splat = first + fragments.splat
+            pixel = fragments.row * camera.width + fragments.column
+            self.draw(buffers, pixel, names[splat], splats.depth[splat])
         shape = camera.height, camera.width
         return {
-            "raster.splat": winner.astype(np.int32).reshape(shape),
-            "raster.depth": depth.reshape(shape),
-            "raster.overdraw": self.overdraw(pixel, winner, fragments).astype(np.int32).reshape(shape),
+            "raster.splat": buffers.winner.reshape(shape),
+            "raster.depth": buffers.depth.reshape(shape),
+            "raster.overdraw": buffers.overdraw.reshape(shape),
         }
 
     def splats(self, vertices: dict[str, Any]) -> Splats:
@@ -83,15 +101,19 @@ class Raster(Stage):
         if self.params.shape != "disc":
             return fragments
         kept = self.in_disc(splats, fragments)
-        return Fragments(*(values[kept] for values in fragments))
+        return Fragments._make(values[kept] for values in fragments)
 
     def half(self, width: Floats) -> Floats:
         """From the centre to a border."""
-        return self.alu.multiply(0.5, width)
+        return 0.5 * width
+
+    def borders(self, center: Floats, half: Floats) -> tuple[Floats, Floats]:
+        """c − w/2 and c + w/2."""
+        return center - half, center + half
 
     def span(self, center: Floats, half: Floats, count: int) -> tuple[Integers, Integers]:
-        """First and last but one of the columns covered, inside the picture: [c − w/2, c + w/2)."""
-        low, high = self.alu.subtract(center, half), self.alu.add(center, half)
+        """The first column covered and the first that is not any more, inside the picture: [c − w/2, c + w/2)."""
+        low, high = self.borders(center, half)
         first, end = self.first_from(low), self.end_before(high)
         return np.clip(first, 0, count).astype(np.int64), np.clip(end, 0, count).astype(np.int64)
 
@@ -104,7 +126,7 @@ class Raster(Stage):
         return np.ceil(low - 0.5)
 
     def end_before(self, high: Floats) -> Floats:
-        """The first pixel whose centre does not lie before a border: it is not covered any more."""
+        """The same for the other border, where pixels are not covered any more."""
         return np.ceil(high - 0.5)
 
     def in_disc(self, splats: Splats, fragments: Fragments) -> Bools:
@@ -117,10 +139,12 @@ class Raster(Stage):
         """w²/4."""
         return self.alu.multiply(0.25, self.alu.multiply(width, width))
 
-    def tested(self, pixel: Integers, name: Integers, depth: Floats) -> tuple[Integers, Floats]:
-        """Winner (-1 none) and depth of all pixels: the n-th fragments of all are tested together."""
-        count = self.scene.camera.height * self.scene.camera.width
-        winner, buffer = np.full(count, -1, np.int64), np.full(count, self.cleared_depth())
+    def cleared(self, count: int) -> Buffers:
+        """The buffers of so many pixels before the first splat."""
+        return Buffers(np.full(count, -1, np.int32), np.ones(count), np.zeros(count, np.int32))
+
+    def draw(self, buffers: Buffers, pixel: Integers, name: Integers, depth: Floats) -> None:
+        """Test fragments and store them: the n-th fragments of all pixels together."""
         order = np.argsort(pixel, kind="stable")
         pixel, name, depth = pixel[order], name[order], depth[order]
         places, starts, many = np.unique(pixel, return_index=True, return_counts=True)
@@ -128,23 +152,19 @@ class Raster(Stage):
             left = many > turn
             places, starts, many = places[left], starts[left], many[left]
             fragment = starts + turn
-            passes = self.passes(depth[fragment], buffer[places])
-            buffer[places[passes]] = depth[fragment[passes]]
-            winner[places[passes]] = name[fragment[passes]]
-        return winner, buffer
-
-    def cleared_depth(self) -> float:
-        """Where nothing is."""
-        return 1.0
+            passes = self.passes(depth[fragment], buffers.depth[places])
+            buffers.depth[places[passes]] = depth[fragment[passes]]
+            buffers.winner[places[passes]] = name[fragment[passes]]
+            buffers.overdraw[places[self.counted(passes)]] += 1
 
     def passes(self, new: Floats, old: Floats) -> Bools:
         """The depth test: LESS."""
         return np.asarray(new < old)
 
+    def counted(self, passes: Bools) -> Bools:
+        """Which fragments are overdraw: all."""
+        return np.ones_like(passes)
+
     def names(self, vertices: dict[str, Any], vertex: Integers) -> Integers:
         """The numbers that winners are known by, of points drawn: their own."""
         return vertex
-
-    def overdraw(self, pixel: Integers, winner: Integers, fragments: Fragments) -> Integers:
-        """How many splats cover each pixel."""
-        return np.bincount(pixel, minlength=winner.size)

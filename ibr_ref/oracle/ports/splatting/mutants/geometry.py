@@ -13,7 +13,6 @@ from ibr_ref.oracle.ports.arithmetic import Floats
 from ibr_ref.oracle.ports.splatting.atlas import Integers
 from ibr_ref.oracle.ports.splatting.mutants.seeded import mutant
 from ibr_ref.oracle.ports.splatting.normals import Bools
-from ibr_ref.oracle.ports.splatting.stage import Vector
 from ibr_ref.oracle.ports.splatting.vertex import Vertex
 
 
@@ -22,15 +21,6 @@ class PixelCorners(Vertex):
 
     def center(self, index: ArrayLike) -> Floats:
         return np.asarray(index, np.float64)
-
-
-class CenteredPinhole(Vertex):
-    """The principal point is taken in the middle of the picture."""
-
-    def intrinsics(self, camera: Any) -> Floats:
-        k = super().intrinsics(camera).copy()
-        k[:2, 2] = camera.width / 2.0, camera.height / 2.0
-        return k
 
 
 class SquarePixels(Vertex):
@@ -49,23 +39,6 @@ class NoSkew(Vertex):
         k = super().intrinsics(camera).copy()
         k[0, 1] = 0.0
         return k
-
-
-class SkewOtherWay(Vertex):
-    """The skew is added where it belongs subtracted."""
-
-    def intrinsics(self, camera: Any) -> Floats:
-        k = super().intrinsics(camera).copy()
-        k[0, 1] = -k[0, 1]
-        return k
-
-
-class RowsUpwards(Vertex):
-    """y_n is not negated: the references stand on their heads."""
-
-    def view_point(self, camera: Any, columns: ArrayLike, rows: ArrayLike, depth: Floats) -> list[Floats]:
-        x, y, z = super().view_point(camera, columns, rows, depth)
-        return [x, -y, z]
 
 
 class DepthAlongTheRay(Vertex):
@@ -110,14 +83,6 @@ class FirstCameraForAll(Vertex):
         return super().world_from_view(self.scene.images[0].camera)
 
 
-class MirroredHandedness(Vertex):
-    """View space is left-handed: x grows to the left."""
-
-    def camera_point(self, world: list[Floats]) -> list[Floats]:
-        x, y, z = super().camera_point(world)
-        return [-x, y, z]
-
-
 class WindowUpwards(Vertex):
     """Window y grows upwards."""
 
@@ -139,11 +104,11 @@ class HalfPixelShift(Vertex):
         return self.alu.subtract(super().window_x(x), 0.5)
 
 
-class SixteenthOfPixelShift(Vertex):
-    """Window y is off by 1/16 pixel: a guard added against rounding."""
+class TwoSubpixelsShift(Vertex):
+    """Window y is off by 1/128 pixel."""
 
     def window_y(self, y: Floats) -> Floats:
-        return self.alu.add(super().window_y(y), 0.0625)
+        return self.alu.add(super().window_y(y), 1.0 / 128.0)
 
 
 class DepthFromMinusOne(Vertex):
@@ -153,33 +118,11 @@ class DepthFromMinusOne(Vertex):
         return self.alu.multiply(0.5, self.alu.add(z, 1.0))
 
 
-class LinearDepth(Vertex):
-    """Window depth is linear in the distance from the eye's plane: z is not divided by w but by the far plane."""
-
-    def projected(self, clip: Vector) -> tuple[tuple[Floats, Floats], Floats]:
-        window, _ = super().projected(clip)
-        return window, self.alu.divide(clip[2], self.alu.number(self.scene.camera.far))
-
-
 class NearPlaneOpen(Vertex):
     """Points between the eye and the near plane are kept."""
 
     def inside_planes(self, z: Floats, w: Floats) -> Bools:
         return z <= w
-
-
-class FarPlaneOpen(Vertex):
-    """Points beyond the far plane are kept."""
-
-    def inside_planes(self, z: Floats, w: Floats) -> Bools:
-        return z >= 0.0
-
-
-class MinusOneToOne(Vertex):
-    """The clip volume is −w ≤ z ≤ w, as in GL, with a matrix for 0 ≤ z ≤ w."""
-
-    def inside_planes(self, z: Floats, w: Floats) -> Bools:
-        return (z >= -w) & (z <= w)
 
 
 class BehindTheEye(Vertex):
@@ -205,29 +148,47 @@ class ColumnsFirst(Vertex):
         return super().source(number, columns, rows)
 
 
+class HalfOfAByte(Vertex):
+    """Centres of pixels are at 127/255, the middle of a byte, not at one half."""
+
+    def center(self, index: ArrayLike) -> Floats:
+        return self.alu.add(index, 127.0 / 255.0)
+
+
+class RoundedRadian(Vertex):
+    """The projection is made with 57.3 degrees a radian: 7/100000 too narrow."""
+
+    def clip_point(self, view: list[Floats]) -> list[Floats]:
+        x, y, z, w = super().clip_point(view)
+        return [self.alu.multiply(1.00007, x), self.alu.multiply(1.00007, y), z, w]
+
+
+class FourDecimals(Vertex):
+    """T_W→C is read from a text with four decimals."""
+
+    def camera_point(self, world: list[Floats]) -> list[Floats]:
+        return self.transform(np.round(self.scene.camera.view_from_world, 4), world)[:3]
+
+
 MUTANTS = (
     mutant(PixelCorners),
-    mutant(CenteredPinhole),
     mutant(SquarePixels),
     mutant(NoSkew),
-    mutant(SkewOtherWay),
-    mutant(RowsUpwards),
     mutant(DepthAlongTheRay),
     mutant(AlwaysPerspective),
     mutant(TransposeForInverse, small=True),
     mutant(RotationTransposed),
     mutant(FirstCameraForAll),
-    mutant(MirroredHandedness),
     mutant(WindowUpwards),
     mutant(LastPixelForSize),
     mutant(HalfPixelShift),
-    mutant(SixteenthOfPixelShift),
-    mutant(DepthFromMinusOne),
-    mutant(LinearDepth),
+    mutant(TwoSubpixelsShift, small=True),
+    mutant(DepthFromMinusOne, hidden="the depths keep their order, hence the colours"),
     mutant(NearPlaneOpen),
-    mutant(FarPlaneOpen, small=True, hidden="a depth above 1 never wins"),
-    mutant(MinusOneToOne, small=True),
-    mutant(BehindTheEye),
-    mutant(CulledByTheCenter, small=True),
+    mutant(BehindTheEye, hidden="their depths are above 1 and never win"),
+    mutant(CulledByTheCenter),
     mutant(ColumnsFirst, hidden="nothing but the check reads vertex.source"),
+    mutant(HalfOfAByte, small=True),
+    mutant(RoundedRadian, small=True),
+    mutant(FourDecimals, small=True),
 )

@@ -28,11 +28,12 @@ class NoSquareRoot(Vertex):
         return self.alu.dot(vector, vector)
 
 
-class NoDelta(Vertex):
-    """δ is left out."""
+class DeltaTimesDistance(Vertex):
+    """δ is multiplied by d, as γ is."""
 
     def denominator(self, d: Floats) -> Floats:
-        return self.alu.subtract(super().denominator(d), self.alu.number(self.params.delta))
+        beta, gamma, delta = (self.alu.number(getattr(self.params, name)) for name in ("beta", "gamma", "delta"))
+        return self.alu.dot([beta, gamma, delta], [self.square(d), d, d])
 
 
 class BetaForGamma(Vertex):
@@ -41,20 +42,6 @@ class BetaForGamma(Vertex):
     def denominator(self, d: Floats) -> Floats:
         beta, gamma, delta = (self.alu.number(getattr(self.params, name)) for name in ("beta", "gamma", "delta"))
         return self.alu.dot([gamma, beta, delta], [self.square(d), d, 1.0])
-
-
-class GammaOnePercentMore(Vertex):
-    """γ is 1 % too large."""
-
-    def denominator(self, d: Floats) -> Floats:
-        return self.alu.dot([super().denominator(d), 0.01 * self.params.gamma], [1.0, d])
-
-
-class RootOfTheLaw(Vertex):
-    """The width is the square root of the quotient, as in GL's GL_POINT_DISTANCE_ATTENUATION."""
-
-    def width(self, d: Floats) -> Floats:
-        return self.alu.root(super().width(d))
 
 
 class DistanceAlongTheAxis(Vertex):
@@ -80,8 +67,8 @@ class DistanceFromTheOrigin(Vertex):
         return self.length(world)
 
 
-class DistanceUnderOrthographicView(Vertex):
-    """d of an orthographic view is taken from where its camera stands, as if that were an eye."""
+class LengthInViewSpace(Vertex):
+    """d is the length of the view position: not quite it where the rotation is measured, nor under an orthographic view."""
 
     def distance(self, image: Any, world: Vector, view: Vector) -> Floats:
         return self.length(view)
@@ -101,33 +88,55 @@ class NoLowerClamp(Vertex):
         return np.minimum(width, self.alu.number(self.params.max_width))
 
 
-class WholeWidths(Vertex):
-    """Widths are rounded to whole pixels."""
+class AlphaTooLarge(Vertex):
+    """α is 0.2 % too large."""
 
-    def clamp_width(self, width: Floats) -> Floats:
-        return super().clamp_width(np.rint(width))
+    def width(self, d: Floats) -> Floats:
+        return self.alu.multiply(1.002, super().width(d))
 
 
-class HalfPixelWider(Vertex):
-    """Widths are half a pixel too large, against holes."""
+class BetaTooLarge(Vertex):
+    """β is 1 % too large."""
 
-    def clamp_width(self, width: Floats) -> Floats:
-        return super().clamp_width(self.alu.add(width, 0.5))
+    def denominator(self, d: Floats) -> Floats:
+        return self.alu.dot([super().denominator(d), 0.01 * self.params.beta], [1.0, self.square(d)])
+
+
+class GammaTooLarge(Vertex):
+    """γ is 1 % too large."""
+
+    def denominator(self, d: Floats) -> Floats:
+        return self.alu.dot([super().denominator(d), 0.01 * self.params.gamma], [1.0, d])
+
+
+class DeltaTooSmall(Vertex):
+    """δ is 0.5 % too small."""
+
+    def denominator(self, d: Floats) -> Floats:
+        return self.alu.subtract(super().denominator(d), 0.005 * self.params.delta)
+
+
+class DistanceOfHalfPrecision(Vertex):
+    """d is kept as a half float: mediump."""
+
+    def distance(self, image: Any, world: Vector, view: Vector) -> Floats:
+        return super().distance(image, world, view).astype(np.float16).astype(np.float64)
 
 
 MUTANTS = (
     mutant(DistanceNotSquared),
     mutant(NoSquareRoot),
-    mutant(NoDelta),
+    mutant(DeltaTimesDistance),
     mutant(BetaForGamma),
-    mutant(GammaOnePercentMore, small=True),
-    mutant(RootOfTheLaw),
     mutant(DistanceAlongTheAxis),
     mutant(DistanceFromTheReference),
     mutant(DistanceFromTheOrigin),
-    mutant(DistanceUnderOrthographicView, small=True),
+    mutant(LengthInViewSpace),
     mutant(NoUpperClamp),
     mutant(NoLowerClamp),
-    mutant(WholeWidths),
-    mutant(HalfPixelWider),
+    mutant(AlphaTooLarge, small=True),
+    mutant(BetaTooLarge, small=True),
+    mutant(GammaTooLarge, small=True),
+    mutant(DeltaTooSmall, small=True),
+    mutant(DistanceOfHalfPrecision, small=True),
 )

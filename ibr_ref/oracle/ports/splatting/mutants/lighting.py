@@ -37,26 +37,12 @@ class NormalOfTheNextPixel(Vertex):
         return super().fetch_normals(codes, rows, np.minimum(columns + 1, codes.shape[1] - 1))
 
 
-class NormalsOfBytesSwapped(Vertex):
-    """Normals are fetched as BGR."""
-
-    def normal(self, codes: Floats) -> list[Floats]:
-        return super().normal(codes[:, ::-1])
-
-
 class LightNotNormalized(Vertex):
     """The vector to the lamp is not normalized."""
 
     def towards_light(self, world: Vector) -> list[Floats]:
         *place, w = self.alu.number(self.scene.light.homogeneous)
         return [self.alu.subtract(value, w * x) for value, x in zip(place, world, strict=True)]
-
-
-class SunForLamp(Vertex):
-    """The lamp lights all points from the direction in which the origin sees it."""
-
-    def towards_light(self, world: Vector) -> list[Floats]:
-        return super().towards_light([0.0 * x for x in world])
 
 
 class LightFromBehind(Vertex):
@@ -81,13 +67,6 @@ class TwoSidedLight(Vertex):
         return np.abs(facing)
 
 
-class WrappedLight(Vertex):
-    """(n·l + 1)/2 for max(0, n·l): half-Lambert."""
-
-    def lambert(self, facing: Floats) -> Floats:
-        return self.alu.multiply(0.5, self.alu.add(facing, 1.0))
-
-
 class AmbientOnePercentMore(Vertex):
     """The ambient light is 1 % too bright."""
 
@@ -109,25 +88,11 @@ class SpecularOnePercentMore(Vertex):
         return super().coefficient(name) * (1.01 if name == "specular" else 1.0)
 
 
-class AmbientForLitOnly(Vertex):
-    """The ambient light falls on the lit side only."""
-
-    def received(self, facing: Floats) -> Floats:
-        return np.where(facing > 0.0, super().received(facing), 0.0)
-
-
 class ReflectedTheOtherWay(Vertex):
     """R = l − 2 (n·l) n: the sign of reflect() with l for the incoming ray."""
 
     def reflected(self, normal: Vector, light: Vector, facing: Floats) -> list[Floats]:
         return [-x for x in super().reflected(normal, light, facing)]
-
-
-class OneForTwo(Vertex):
-    """R = (n·l) n − l: the 2 is forgotten."""
-
-    def reflected(self, normal: Vector, light: Vector, facing: Floats) -> list[Floats]:
-        return [self.alu.dot([facing, -1.0], [n, l]) for n, l in zip(normal, light, strict=True)]
 
 
 class HalfVector(Vertex):
@@ -182,28 +147,83 @@ class NoClamp(Vertex):
         return channel
 
 
+class LampOfTwoDecimals(Vertex):
+    """The lamp's place is off by half a hundredth on each axis."""
+
+    def towards_light(self, world: Vector) -> list[Floats]:
+        *place, w = self.scene.light.homogeneous
+        return self.towards([*(x + off * w for x, off in zip(place, (0.005, -0.005, 0.005), strict=True)), w], world)
+
+
+class Attenuation(Vertex):
+    """The lamp's light weakens by 0.05 % a unit of distance: a default left in."""
+
+    def lit(self, image: Any, world: Vector, codes: Floats, albedo: Vector) -> list[Floats]:
+        lamp = self.scene.light and self.scene.light.homogeneous
+        if lamp is None or lamp[3] == 0.0:
+            return super().lit(image, world, codes, albedo)
+        distance = self.length([self.alu.subtract(place, x) for place, x in zip(lamp, world, strict=False)])
+        weaker = self.alu.subtract(1.0, self.alu.multiply(0.0005, distance))
+        return super().lit(image, world, codes, [self.alu.multiply(weaker, channel) for channel in albedo])
+
+
+class FastInverseSquareRoot(Vertex):
+    """The vector to the light is normalized with the trick of 0x5F3759DF and one step of Newton's, to 0.18 %."""
+
+    def towards_light(self, world: Vector) -> list[Floats]:
+        light = super().towards_light(world)
+        square = np.asarray(self.alu.dot(light, light), np.float32)
+        guess = (0x5F3759DF - (square.view(np.int32) >> 1)).astype(np.int32).view(np.float32).astype(np.float64)
+        root = guess * (1.5 - 0.5 * square * guess * guess)
+        return [self.alu.multiply(root, x) for x in light]
+
+
+class NormalsOfHalfPrecision(Vertex):
+    """Normals are kept as half floats: mediump."""
+
+    def normal(self, codes: Floats) -> list[Floats]:
+        return [x.astype(np.float16).astype(np.float64) for x in super().normal(codes)]
+
+
+class VaryingsOfHalfPrecision(Vertex):
+    """Colours leave the vertex stage as half floats."""
+
+    def lit(self, image: Any, world: Vector, codes: Floats, albedo: Vector) -> list[Floats]:
+        return [x.astype(np.float16).astype(np.float64) for x in super().lit(image, world, codes, albedo)]
+
+
+class ClampedBelowOne(Vertex):
+    """Colours are clamped to 0.998, against an overflow of bytes."""
+
+    def clamped(self, channel: Floats) -> Floats:
+        return np.clip(channel, 0.0, 0.998)
+
+
 MUTANTS = (
-    mutant(SignedNormalizedFetch, small=True),
-    mutant(NormalsNotRenormalized, small=True),
+    mutant(SignedNormalizedFetch),
+    mutant(NormalsNotRenormalized),
     mutant(NormalOfTheNextPixel),
-    mutant(NormalsOfBytesSwapped),
     mutant(LightNotNormalized),
-    mutant(SunForLamp),
     mutant(LightFromBehind),
     mutant(LampInViewSpace),
     mutant(TwoSidedLight),
-    mutant(WrappedLight),
     mutant(AmbientOnePercentMore, small=True),
     mutant(DiffuseHalfPercentLess, small=True),
     mutant(SpecularOnePercentMore, small=True),
-    mutant(AmbientForLitOnly),
     mutant(ReflectedTheOtherWay),
-    mutant(OneForTwo),
     mutant(HalfVector),
     mutant(ExponentOneLess, small=True),
-    mutant(HighlightInTheShade, small=True),
+    mutant(HighlightInTheShade),
     mutant(ColoredHighlight),
     mutant(HighlightForTheReference),
     mutant(ViewerAtInfinity),
-    mutant(NoClamp, hidden=""),
+    mutant(NoClamp, small=True),
+    mutant(LampOfTwoDecimals, small=True),
+    mutant(Attenuation, small=True),
+    mutant(FastInverseSquareRoot, small=True),
+    mutant(NormalsOfHalfPrecision, small=True),
+    mutant(
+        VaryingsOfHalfPrecision, small=True, hidden="far below the steps of bytes, and as often too bright as too dark"
+    ),
+    mutant(ClampedBelowOne, small=True),
 )

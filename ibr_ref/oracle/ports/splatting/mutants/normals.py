@@ -67,20 +67,12 @@ class LoneNormalsUp(Normals):
         return [0.0 * towards[0], 0.0 * towards[1], 0.0 * towards[2] + 1.0]
 
 
-class UnitAreaNormals(Normals):
-    """The cross product is not normalized."""
-
-    def normalized(self, cross: Vector) -> list[Floats]:
-        return list(cross)
-
-
 MUTANTS = (
-    mutant(ForwardDifferences, small=True, hidden=_HIDDEN),
-    mutant(TiesToTheLeft, small=True, hidden=_HIDDEN),
+    mutant(ForwardDifferences, hidden=_HIDDEN),
+    mutant(TiesToTheLeft, hidden=_HIDDEN),
     mutant(JumpOfFiveHundredths, hidden=_HIDDEN),
     mutant(NormalsOfBothSides, hidden=_HIDDEN),
     mutant(NormalsFaceTheView, hidden=_HIDDEN),
-    mutant(HalfByteNormals, small=True, hidden=_HIDDEN),
-    mutant(LoneNormalsUp, small=True, hidden=_HIDDEN),
-    mutant(UnitAreaNormals, hidden=_HIDDEN),
+    mutant(HalfByteNormals, hidden=_HIDDEN),
+    mutant(LoneNormalsUp, hidden=_HIDDEN),
 )

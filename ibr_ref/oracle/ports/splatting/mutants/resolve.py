@@ -49,13 +49,6 @@ class TruncatedPicture(Resolve):
         return np.floor(255.0 * color) / 255.0
 
 
-class PictureOfSixBits(Resolve):
-    """Colours are written in 6 bits a channel."""
-
-    def written(self, color: Floats) -> Floats:
-        return np.floor(63.0 * color + 0.5) / 63.0
-
-
 class BlendedLeftOn(Resolve):
     """A share of 1/512 of the background shines through: blending is left on."""
 
@@ -84,15 +77,32 @@ class ColorOfThePixelAbove(Resolve):
         return super().splat_color(colors, np.concatenate([winner[:1], winner[:-1]]))
 
 
+class BackgroundOver256(Resolve):
+    """The background's bytes are divided by 256, not by 255."""
+
+    def background(self) -> Floats:
+        return super().background() * (255.0 / 256.0)
+
+
+class LastColumnUnresolved(Resolve):
+    """The pass over the picture ends one column early."""
+
+    def shown(self, winner: Integers) -> Bools:
+        shown = super().shown(winner)
+        shown[:, -1] = False
+        return shown
+
+
 MUTANTS = (
     mutant(ClearedToBlack),
     mutant(ColorsBlueFirst),
     mutant(FlippedRows),
     mutant(EncodedForScreens),
     mutant(TruncatedPicture, small=True),
-    mutant(PictureOfSixBits),
     mutant(BlendedLeftOn, small=True),
     mutant(FirstSplatForNone, small=True),
     mutant(LastSplatUnread, small=True),
     mutant(ColorOfThePixelAbove),
+    mutant(BackgroundOver256, small=True),
+    mutant(LastColumnUnresolved, small=True),
 )

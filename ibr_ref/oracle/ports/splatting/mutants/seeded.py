@@ -12,7 +12,7 @@ from ibr_ref.oracle.ports.splatting.stage import Stage
 def mutant(stage: type[Stage], *, small: bool = False, hidden: str = "") -> Mutant:
     """The port with one broken stage, named in words like the class and wrong where the class says."""
     return Mutant(
-        name=re.sub(r"(?<=[a-z])(?=[A-Z])", "-", stage.__name__).lower(),
+        name=re.sub(r"(?<!^)(?=[A-Z])|(?<=[a-z])(?=\d)", "-", stage.__name__).lower(),
         fault=" ".join((stage.__doc__ or "").split()),
         stage=replaced_stage(stage),
         port=with_stage(stage),
