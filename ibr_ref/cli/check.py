@@ -10,7 +10,7 @@ import typer
 from ibr_ref.cli.progress import progress
 
 if TYPE_CHECKING:
-    from ibr_ref.oracle.examine import Examination
+    from ibr_ref.oracle.examination import Examination
 
 EXAMPLES = """
 Examples:

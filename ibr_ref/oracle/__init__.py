@@ -20,10 +20,10 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ibr_ref.oracle.answer import check
     from ibr_ref.oracle.cases import Case, build, names
     from ibr_ref.oracle.device import PROFILES, Device
-    from ibr_ref.oracle.check import check
-    from ibr_ref.oracle.examine import Examination, examine
+    from ibr_ref.oracle.examination import Examination, examine
     from ibr_ref.oracle.files import Submission, export, load_case, load_submission, submission_from_arrays
     from ibr_ref.oracle.report import write as write_report
     from ibr_ref.oracle.verdict import Outcome, Verdict
@@ -32,13 +32,13 @@ _HOMES = {
     "PROFILES": "device",
     "Case": "cases",
     "Device": "device",
-    "Examination": "examine",
+    "Examination": "examination",
     "Outcome": "verdict",
     "Verdict": "verdict",
     "Submission": "files",
     "build": "cases",
-    "check": "check",
-    "examine": "examine",
+    "check": "answer",
+    "examine": "examination",
     "export": "files",
     "load_case": "files",
     "load_submission": "files",

@@ -53,11 +53,8 @@ def _bias(
     case: Case, parameter: Parameter, color: NDArray[np.generic], image: Judgement, device: Device
 ) -> Bias | None:
     """One parameter's regression; None where the picture does not depend on it."""
-    up, down = (parameter.moved(parameter.value + s * parameter.step).frame.color for s in (1.0, -1.0))
     middle = case.frame.color
-    derivative = (up - down) / (2.0 * parameter.step)
-    # Where a decision turns the picture jumps; there the quotient is no derivative.
-    smooth = (np.abs(up + down - 2.0 * middle) <= 0.1 * np.abs(up - down)).all(axis=-1)
+    derivative, smooth = _derivative(parameter, middle)
     used = smooth & ~image.undecided
     d = derivative[used]
     power = float((d * d).sum())
@@ -80,6 +77,33 @@ def _bias(
                 legal=legal,
             )
     return best
+
+
+def _derivative(parameter: Parameter, middle: Floats) -> tuple[Floats, Bools]:
+    """The picture's derivative, and (H, W) where it is one: where a decision turns, the picture jumps.
+
+    At the end of a parameter's range the quotient is one-sided, and compared with that of half the step.
+    """
+    up, down = (_moved(parameter, sign * parameter.step) for sign in (1.0, -1.0))
+    if up is not None and down is not None:
+        change, bend = up - down, up + down - 2.0 * middle
+        derivative = change / (2.0 * parameter.step)
+    else:
+        sign = -1.0 if up is None else 1.0
+        whole, half = _moved(parameter, sign * parameter.step), _moved(parameter, sign * 0.5 * parameter.step)
+        if whole is None or half is None:
+            return np.zeros_like(middle), np.zeros(middle.shape[:2], np.bool_)
+        change, bend = whole - middle, whole + middle - 2.0 * half
+        derivative = change / (sign * parameter.step)
+    return derivative, (np.abs(bend) <= 0.1 * np.abs(change)).all(axis=-1)
+
+
+def _moved(parameter: Parameter, step: float) -> Floats | None:
+    """The picture with the parameter changed; None beyond its range."""
+    try:
+        return parameter.moved(parameter.value + step).frame.color
+    except ValueError:
+        return None
 
 
 def _errors(image: Judgement, color: NDArray[np.generic], device: Device) -> Floats:

@@ -11,7 +11,7 @@ import numpy as np
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.examine import judge
+from ibr_ref.oracle.examination import judge
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.faults import Mutant, PlainPort, Variant

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ibr_ref.oracle.examine import examine
+from ibr_ref.oracle.examination import examine
 from ibr_ref.oracle.verdict import Outcome, Verdict
 from tests.oracle.plain_referee import box_case
 

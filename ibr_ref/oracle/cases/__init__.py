@@ -20,7 +20,8 @@ def names(method: str | None = None) -> list[str]:
 
 def build(name: str) -> Case:
     """The case of that name. Raises ValueError with all names for another."""
-    checks.choice("case", name, names())
     method = name.partition("-")[0]
+    if method not in METHODS or name not in names(method):
+        raise checks.reject("case", name, " | ".join(names()))
     case: Case = import_module(f"ibr_ref.oracle.cases.{method}").CASES[name]()
     return case

@@ -1,10 +1,10 @@
 """Cases as folders, and what ports hand in: everything of the oracle that touches a file."""
 
 from ibr_ref.oracle.files.content import stale
-from ibr_ref.oracle.files.export import export
 from ibr_ref.oracle.files.load import changed_stages, load_case
 from ibr_ref.oracle.files.problem import Problem
 from ibr_ref.oracle.files.submission import Submission, load_submission, submission_from_arrays
+from ibr_ref.oracle.files.write import export
 
 __all__ = [
     "Problem",

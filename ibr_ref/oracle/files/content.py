@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.files.export import color_bytes
 from ibr_ref.oracle.files.problem import Problem
+from ibr_ref.oracle.files.write import color_bytes
 
 Bytes = NDArray[np.uint8]
 

@@ -11,12 +11,12 @@ from pydantic import BaseModel, ValidationError
 
 from ibr_ref.io.files import naming
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.files.export import LARGEST_DOCUMENT
 from ibr_ref.oracle.files.folder import existing_folder, file_inside, small_file
 from ibr_ref.oracle.files.manifest import Manifest, digest_of_bytes
 from ibr_ref.oracle.files.npy import Accept, Header, digest, read_array
 from ibr_ref.oracle.files.pictures import read_bytes
 from ibr_ref.oracle.files.problem import UnusableError, field_problem
+from ibr_ref.oracle.files.write import LARGEST_DOCUMENT
 from ibr_ref.oracle.schema import ADAPTER, Document, build, describe_inputs, input_files
 from ibr_ref.oracle.schema.base import Stored, StoredFile
 from ibr_ref.oracle.schema.stages import expected

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from ibr_ref.oracle.examine import Examination
+from ibr_ref.oracle.examination import Examination
 from ibr_ref.oracle.judgement import Judgement
 
 Bytes = NDArray[np.uint8]

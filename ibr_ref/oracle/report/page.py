@@ -14,7 +14,7 @@ from jinja2 import Environment, StrictUndefined
 from numpy.typing import NDArray
 
 from ibr_ref.io.files import atomic
-from ibr_ref.oracle.examine import Examination
+from ibr_ref.oracle.examination import Examination
 from ibr_ref.oracle.report.layers import layers, planes, stage_layer
 
 MOST_BYTES = 96 * 2**20

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from ibr_ref.oracle import report
-from ibr_ref.oracle.examine import Examination, examine
+from ibr_ref.oracle.examination import Examination, examine
 from tests.oracle.plain_referee import box_case
 
 BROWSER = next(
@@ -28,7 +28,7 @@ def failed() -> Examination:
     from tests.oracle.plain_referee import PlainReferee
 
     patch = pytest.MonkeyPatch()
-    for module in ("examine", "conventions", "bias"):
+    for module in ("examination", "conventions", "bias"):
         patch.setattr(f"ibr_ref.oracle.{module}.referee", lambda method: PlainReferee())
     case = box_case()
     frame = case.frame

@@ -155,7 +155,7 @@ def joined(parts: Sequence[Bounded]) -> Bounded:
 
 
 def _window(ndc: Bounded, from_border: Bounded, size: int) -> Bounded:
-    """from_border / 2 . size, as the conventions have it, or ndc . size / 2 + size / 2, as viewports do: the larger error."""
+    """from_border / 2 . size, as the conventions have it, or ndc . size / 2 + size / 2, as viewports do: the larger."""
     device = ndc.device
     scaled, half = from_border * exact(0.5 * size, device), exact(0.5 * size, device)
     viewport = total([ndc * half, exact(np.full_like(ndc.value, 0.5 * size), device)])

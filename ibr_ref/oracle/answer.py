@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.cases import Case, build, names
-from ibr_ref.oracle.examine import Examination, examine
+from ibr_ref.oracle.examination import Examination, examine
 from ibr_ref.oracle.files import Submission, stale
 from ibr_ref.oracle.verdict import Outcome
 
