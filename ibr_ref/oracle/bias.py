@@ -101,7 +101,7 @@ def _derivative(parameter: Parameter, middle: Floats) -> tuple[Floats, Bools]:
 def _moved(parameter: Parameter, step: float) -> Floats | None:
     """The picture with the parameter changed; None beyond its range."""
     try:
-        return parameter.moved(parameter.value + step).frame.color
+        return parameter.moved(parameter.value + step).draw(stages=False).color
     except ValueError:
         return None
 
