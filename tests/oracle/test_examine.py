@@ -116,7 +116,7 @@ def test_a_small_bias_inside_the_bytes_is_a_fail_that_names_the_parameter(plain_
             assert verdict.stages[0].right
             assert verdict.outcome is outcome, verdict.words()
     assert [bias.parameter for bias in verdict.biases] == ["light.ambient"]
-    assert verdict.biases[0].looks_like == pytest.approx(0.2015, abs=5e-4)
+    assert abs(verdict.biases[0].looks_like - 0.2) > verdict.biases[0].legal
 
 
 def test_equal_colours_are_rounded_alike_and_no_bias() -> None:
