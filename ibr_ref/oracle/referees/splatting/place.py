@@ -155,7 +155,7 @@ def joined(parts: Sequence[Bounded]) -> Bounded:
 
 
 def _window(ndc: Bounded, from_border: Bounded, size: int) -> Bounded:
-    """from_border / 2 . size, as the conventions have it, or ndc . size / 2 + size / 2, as viewports do: the larger error."""
+    """from_border / 2 . size, as the conventions have it; or ndc . size / 2 + size / 2, as viewports do."""
     device = ndc.device
     scaled, half = from_border * exact(0.5 * size, device), exact(0.5 * size, device)
     viewport = total([ndc * half, exact(np.full_like(ndc.value, 0.5 * size), device)])
@@ -236,7 +236,8 @@ def with_handed(points: Placed, handed: Handed, device: Device) -> tuple[Placed,
     for name in ("vertex.depth", "vertex.window", "vertex.width"):
         if name in given:
             value = given[name].value
-            kept = value > 0.0 if name == "vertex.width" else np.isfinite(value.reshape(len(value), -1)).all(axis=1)
+            finite = np.isfinite(value.reshape(len(value), -1)).all(axis=1)
+            kept = np.asarray(value > 0.0 if name == "vertex.width" else finite, np.bool_)
             doubtful = np.zeros_like(kept)
     for bound in given.values():
         kept = kept & np.isfinite(bound.value.reshape(len(kept), -1)).all(axis=1)

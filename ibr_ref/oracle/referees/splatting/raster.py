@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.referees.splatting.place import Placed, placed, with_handed
+from ibr_ref.oracle.referees.splatting.place import placed, with_handed
 from ibr_ref.oracle.referees.splatting.splats import Contest, contest
 from ibr_ref.oracle.referees.splatting.table import Table, table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
