@@ -11,7 +11,7 @@ from ibr_ref.oracle.judgement import Handed, TraceRow
 from ibr_ref.oracle.referees.splatting.image import as_bytes
 from ibr_ref.oracle.referees.splatting.place import Placed, placed, with_handed
 from ibr_ref.oracle.referees.splatting.spans import axis, border
-from ibr_ref.oracle.referees.splatting.splats import buffered, contest
+from ibr_ref.oracle.referees.splatting.splats import Contest, buffered, contest
 from ibr_ref.oracle.referees.splatting.table import table
 from ibr_ref.oracle.referees.splatting.trace.points import alone, colored
 from ibr_ref.oracle.referees.splatting.trace.rows import DIFFERS, compared, number, text, told
@@ -37,6 +37,8 @@ def pixel(case: Case, device: Device, fed: Handed, handed: Handed, at: tuple[int
         rows += _splat(where, splat, at, device)
     rows.append(told("winner (-1 none)", reference, port))
     rows.append(_overdraw(case, result.least, result.most, handed, at))
+    if "raster.depth" in handed:
+        rows.append(_depth(result, reference if port is None else port, np.asarray(handed["raster.depth"])[at]))
     shown = reference if port is None or not 0 <= port < len(points.rows) else port
     if shown >= 0:
         one = alone(points, shown)
@@ -80,6 +82,13 @@ def _overdraw(case: Case, least: np.ndarray, most: np.ndarray, handed: Handed, a
     return TraceRow(
         step="overdraw", reference=reference, port="" if port is None else str(port), note="" if legal else DIFFERS
     )
+
+
+def _depth(result: Contest, splat: int, port: np.ndarray) -> TraceRow:
+    """The depth buffer, against the depth of the splat that the port shows."""
+    if not 0 <= splat < len(result.depth.value):
+        return told("depth buffer", text(1.0), text(port))
+    return number("depth buffer", [result.depth[splat]], port)
 
 
 def _shown(step: str, reference: np.ndarray, port: np.ndarray) -> TraceRow:

@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, TraceRow
 from ibr_ref.oracle.referees.splatting.lighting import lit_terms, shades
 from ibr_ref.oracle.referees.splatting.place import Placed, placed
 from ibr_ref.oracle.referees.splatting.table import Table, table
-from ibr_ref.oracle.referees.splatting.trace.rows import compared, number, told
+from ibr_ref.oracle.referees.splatting.trace.rows import compared, number, text, told
 
 
 def point(case: Case, device: Device, handed: Handed, vertex: int) -> list[TraceRow]:
@@ -29,10 +28,7 @@ def point(case: Case, device: Device, handed: Handed, vertex: int) -> list[Trace
         number("fetch: depth", [points.depth[0]]),
         number("world x, y, z", [axis[0] for axis in where.world]),
         *_kept(where),
-        number("window x, y", [where.x[0], where.y[0]], own.get("vertex.window")),
-        number("window depth z / w", [where.depth[0]], own.get("vertex.depth")),
-        number("distance d of the law", [where.distance[0]]),
-        number("width, clamped; 0 where the point is dropped", [_width(where, device)], own.get("vertex.width")),
+        *_landed(where, own),
     ]
     return rows + colored(case, device, points, where, own.get("vertex.color"))
 
@@ -58,9 +54,24 @@ def _integers(array: Any) -> Any:
     return None if array is None else tuple(int(number) for number in array)
 
 
-def _width(where: Placed, device: Device) -> Bounded:
-    zero = np.zeros(())
-    return where.width[0] if where.kept[0] else Bounded(zero, zero, device)
+def _landed(where: Placed, own: dict[str, Any]) -> list[TraceRow]:
+    """Where the point is in the window, and how wide; as the port has decided where both is legal."""
+    kept = bool(where.kept[0])
+    if where.doubtful[0] and "vertex.width" in own:
+        kept = bool(own["vertex.width"] > 0.0)
+    if not kept:
+        expected = {"vertex.window": "nan, nan", "vertex.depth": "nan", "vertex.width": "0"}
+        return [told(f"dropped: {name}", nothing, _text(own.get(name))) for name, nothing in expected.items()]
+    return [
+        number("window x, y", [where.x[0], where.y[0]], own.get("vertex.window")),
+        number("window depth z / w", [where.depth[0]], own.get("vertex.depth")),
+        number("distance d of the law", [where.distance[0]]),
+        number("width, clamped", [where.width[0]], own.get("vertex.width")),
+    ]
+
+
+def _text(array: Any) -> str | None:
+    return None if array is None else text(array)
 
 
 def _kept(where: Placed) -> list[TraceRow]:

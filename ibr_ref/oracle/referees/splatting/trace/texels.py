@@ -33,15 +33,17 @@ def normal_texel(case: Case, device: Device, handed: Handed, texel: int) -> list
         rows += _neighbours(described.depth, described.valid, row, column)
         for axis, name in ((1, "neighbour on the row"), (0, "neighbour in the column")):
             found = steps(described, axis)
-            legal = [SIDES[axis][side] for side, where in found.legal.items() if where[row, column]]
+            allowed = [SIDES[axis][side] for side, where in found.legal.items() if where[row, column]]
             rows.append(told(name, SIDES[axis][int(found.reference[row, column])]))
-            rows.append(told(f"{name}: legal", " or ".join(legal)))
+            rows.append(told(f"{name}: legal", " or ".join(allowed)))
         for pixels, low, high in Codes(described).outcomes:
             for i in np.flatnonzero((pixels == (row, column)).all(axis=1)):
                 rows.append(told("codes of one outcome, from and to", f"{text(low[i])} to {text(high[i])}"))
-    mine = None if reference is None else tuple(reference[row, column].tolist())
-    theirs = None if port is None else tuple(np.asarray(port[row, column]).tolist())
-    return [*rows, told("code", mine, theirs)]
+    mine = "" if reference is None else text(reference[row, column])
+    if port is None:
+        return [*rows, told("code", mine)]
+    legal = bool(Codes(described).allows(port.astype(np.float64))[row, column])
+    return [*rows, TraceRow(step="code", reference=mine, port=text(port[row, column]), note="" if legal else DIFFERS)]
 
 
 def _neighbours(depth: Bounded, valid: np.ndarray, row: int, column: int) -> list[TraceRow]:
@@ -83,6 +85,5 @@ def atlas_texel(case: Case, device: Device, handed: Handed, texel: int) -> list[
     if "atlas.normal" in handed:
         mine = stages["atlas.normal"][page]
         theirs = page_of(handed["atlas.normal"], page, mine.shape)[row, column]
-        note = "" if np.array_equal(mine[row, column], theirs) else DIFFERS
-        rows.append(TraceRow(step="atlas.normal", reference=text(mine[row, column]), port=text(theirs), note=note))
+        rows.append(TraceRow(step="atlas.normal", reference=text(mine[row, column]), port=text(theirs)))
     return rows
