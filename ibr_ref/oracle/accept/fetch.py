@@ -8,6 +8,7 @@ positions reaches into other cells, its extremes lie on the corners of the box a
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ Floats = NDArray[np.float64]
 
 FILTER_ROUNDINGS = 8.0
 """Of a filter in float arithmetic: two nested lerps, each 1 - f, two products and a sum on numbers no larger than the
-largest texel, and one rounding of the texel itself."""
+largest texel in reach, and one rounding of the texel itself."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,16 @@ class Texture:
 
     texels: Floats
     repeat: bool = False
+
+    @cached_property
+    def largest(self) -> float:
+        """The largest magnitude of a texel."""
+        return float(np.max(np.abs(self.texels)))
+
+    @cached_property
+    def spread(self) -> float:
+        """The difference of the largest and the least texel."""
+        return float(np.ptp(self.texels))
 
     def at(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Floats:
         """Texels by index, after the wrap mode."""
@@ -67,9 +78,10 @@ def fetch(texture: Texture, u: Bounded, v: Bounded) -> Bounded:
     slope_y = np.maximum(np.abs(t01 - t00), np.abs(t11 - t10))
     error = slope_x * texture._spread(off_x) + slope_y * texture._spread(off_y)
     crossing = (np.floor(at_x - off_x) != np.floor(at_x + off_x)) | (np.floor(at_y - off_y) != np.floor(at_y + off_y))
+    largest = np.max([np.abs(t) for t in (t00, t10, t01, t11)], axis=0)
     if crossing.any():
+        largest[crossing] = texture.largest
         error[crossing] = _spread_around(texture, *(a[crossing] for a in (at_x, at_y, off_x, off_y, value)))
-    largest = np.max(np.abs(texture.texels))
     rounding = FILTER_ROUNDINGS * device.operation * UNIT * largest
     return Bounded(value, error + rounding, device)
 
@@ -85,7 +97,7 @@ def _spread_around(texture: Texture, x: Floats, y: Floats, off_x: Floats, off_y:
         for at_y in _stations(y, off_y):
             error = np.maximum(error, np.abs(texture.bilinear(at_x, at_y) - value))
     wide = (off_x >= 0.5) | (off_y >= 0.5)  # more than one border may cut the box
-    return np.where(texture._spread(wide), np.ptp(texture.texels), error)
+    return np.where(texture._spread(wide), texture.spread, error)
 
 
 def _stations(x: Floats, off: Floats) -> tuple[Floats, Floats, Floats]:
