@@ -91,8 +91,9 @@ def snapped(x: Bounded) -> tuple[Floats, Floats]:
     if device.subpixel_any or device.subpixel_bits != 8:
         on_raster = (steps == reference) & (x.error == 0.0) & (device.subpixel_bits >= 8)
         return reference / RASTER, np.where(on_raster, 0.0, max(2.0**-device.subpixel_bits, 1.0 / RASTER) + x.error)
-    to_tie = 0.5 - np.abs(steps - reference)
-    return reference / RASTER, np.where(to_tie > RASTER * x.error, 0.0, 1.0 / RASTER)
+    # From steps = reference + d a coordinate that is off by e steps goes no farther than floor(|d| + e + 1/2).
+    off = np.floor(np.abs(steps - reference) + RASTER * x.error + 0.5)
+    return reference / RASTER, np.where(x.error > 0.0, off, 0.0) / RASTER
 
 
 def covered(x: Bounded, y: Bounded, width: int, height: int) -> Iterator[Covered]:
