@@ -57,6 +57,8 @@ class Fragments:
     certain: Bools
     weights: Floats
     error: Floats
+    moved: Floats
+    """(n,) how far, along each axis, the point that a device's weights belong to may lie from the pixel's centre."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +126,7 @@ def fragments(x: Bounded, y: Bounded, width: int, height: int) -> Fragments:
     inside = reference & ((slack < edges) | (slack == 0.0))
     possible = ((-slack <= edges) & (slack > 0.0) | reference).all(axis=1)
     possible &= (area > 0.0) | (slack > 0.0).any(axis=1)
-    weights, error = _weights(corners, triangle, edges)
+    weights, error, moved = _weights(corners, triangle, edges)
     turned = corners.turned[triangle]
     inside[turned], weights[turned] = inside[turned][:, [0, 2, 1]], weights[turned][:, [0, 2, 1]]
     certain = inside.all(axis=1) & (area > 0.0)
@@ -137,6 +139,7 @@ def fragments(x: Bounded, y: Bounded, width: int, height: int) -> Fragments:
         certain=certain[possible],
         weights=weights[possible],
         error=error[possible],
+        moved=moved[possible],
     )
 
 
@@ -212,8 +215,8 @@ def _slack(off: Floats, away: Floats) -> Floats:
     return slack
 
 
-def _weights(corners: Corners, triangle: Ints, edges: Floats) -> tuple[Floats, Floats]:
-    """(n, 3) the edge functions' shares of the area, and (n,) by how much a legal device's may differ.
+def _weights(corners: Corners, triangle: Ints, edges: Floats) -> tuple[Floats, Floats, Floats]:
+    """(n, 3) the edge functions' shares of the area; (n,) by how much a legal device's may differ, and `Fragments.moved`.
 
     e <= G sum (|w_i| + e) off_i with the steepest gradient G of the three weights, solved for e.
     """
@@ -222,11 +225,10 @@ def _weights(corners: Corners, triangle: Ints, edges: Floats) -> tuple[Floats, F
     with np.errstate(divide="ignore", invalid="ignore"):
         weights = edges / corners.area[triangle, None]
         gradient = np.max(reach, axis=0) / corners.area
-        room = 1.0 - gradient * off.sum(axis=1)
-        moved = (np.abs(weights) * off[triangle]).sum(axis=1)
-        error = np.where(room[triangle] > 0.0, gradient[triangle] * moved / room[triangle], np.inf)
-    moving = np.asarray(off.max(axis=1) > 0.0)[triangle]
-    return weights, np.where(moving, error, 0.0)
+        room = (1.0 - gradient * off.sum(axis=1))[triangle]
+        moved = np.where(room > 0.0, (np.abs(weights) * off[triangle]).sum(axis=1) / room, np.inf)
+        moving = np.asarray(off.max(axis=1) > 0.0)[triangle]
+        return weights, np.where(moving, gradient[triangle] * moved, 0.0), np.where(moving, moved, 0.0)
 
 
 def _top_left(corners: Corners, a: int, b: int) -> Bools:

@@ -96,12 +96,15 @@ def outcomes_of(search: Search) -> tuple[Outcomes, Ints]:
     fragment, step, high = (a[~end] for a in (fragment, step, high))
     ends = (np.full(len(ground), -1), np.full(len(ground), search.lattice))
     nothing = np.full(len(discarded), -1)
-    return _placed(
+    outcomes = _placed(
         search,
         np.concatenate([fragment, ground, discarded]),
         np.concatenate([step, ends[0], nothing]),
         np.concatenate([high, ends[1], nothing]),
-    ), lost
+    )
+    # Where the eye may lie at the fragment's own height, the ray may lead anywhere.
+    anywhere = (outcomes.hit_index >= 0) & ~np.all([np.isfinite(x.value + x.error) for x in outcomes.hit], axis=0)
+    return outcomes.take(~anywhere), np.union1d(lost, outcomes.fragment[anywhere])
 
 
 def inside(search: Search, fragment: Ints, index: Ints) -> tuple[Bools, Bools]:

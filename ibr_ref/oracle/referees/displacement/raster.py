@@ -74,8 +74,7 @@ def fragments_of(triangles: list[Triangles], device: Device, width: int, height:
 def _fragments(polygon: int, triangles: Triangles, width: int, height: int) -> Fragments:
     x, y = window(triangles.clip, width, height)
     found = coverage.fragments(x, y, width, height)
-    at = (coverage.snapped(x)[0], coverage.snapped(y)[0])
-    weights = _rounded_weights(found, *at, x.device)
+    weights = _weights(found, coverage.snapped(x)[0], coverage.snapped(y)[0], x.device)
     pixel = found.rows * width + found.columns
     t = found.triangle
     return Fragments(
@@ -114,59 +113,76 @@ def _surely_covered(pixel: Ints, found: coverage.Fragments, patch: Floats) -> Bo
 
 @dataclass(frozen=True, eq=False)
 class _Weights:
-    """(n, 3) weights of the corners, and (n, 3) how far a device's may be off, its arithmetic included."""
+    """(n, 3) weights of the corners as the reference has them, and what a device may make of them."""
 
     value: Floats
-    error: Floats
+    rounding: Floats
+    """(n, 3) of a device's arithmetic."""
+    gradient: Floats
+    """(n, 3, 2) along x and y, a pixel."""
+    moved: Floats
+    """(n,) by how much the point may move along x and y, for the device's corners lie elsewhere."""
 
 
-def _rounded_weights(found: coverage.Fragments, x: Floats, y: Floats, device: Device) -> _Weights:
+def _weights(found: coverage.Fragments, x: Floats, y: Floats, device: Device) -> _Weights:
     px, py, t = found.columns + 0.5, found.rows + 0.5, found.triangle
-    area = np.abs((x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0]))[t]
-    error = np.empty_like(found.weights)
+    area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0])
+    rounding, gradient = np.empty_like(found.weights), np.empty((len(x), 3, 2))
     units = (EDGE_ROUNDINGS * device.operation + device.quotient) * UNIT
-    for i in range(3):
-        a, b = (i + 1) % 3, (i + 2) % 3
-        products = np.abs((x[t, b] - x[t, a]) * (py - y[t, a])) + np.abs((y[t, b] - y[t, a]) * (px - x[t, a]))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            error[:, i] = found.error + units * products / area
-    return _Weights(found.weights, np.where(np.isnan(error), np.inf, error))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for i in range(3):
+            a, b = (i + 1) % 3, (i + 2) % 3
+            dx, dy = x[:, b] - x[:, a], y[:, b] - y[:, a]
+            gradient[:, i] = np.stack([-dy / area, dx / area], axis=1)
+            products = np.abs(dx[t] * (py - y[t, a])) + np.abs(dy[t] * (px - x[t, a]))
+            rounding[:, i] = units * products / np.abs(area[t])
+    return _Weights(found.weights, rounding, gradient[t], found.moved)
 
 
 def _varying(weights: _Weights, triangles: Triangles, t: Ints) -> Bounded:
     """C = (sum b_i a_i / w_i) / (sum b_i / w_i).
 
-    With weights b' and w' of the device, C' - C = sum (b'_i / w'_i - b_i / w_i)(a_i - C) / sum b'_i / w'_i, because the
-    terms sum b_i (a_i - C) / w_i cancel. To that come the errors of a_i and the roundings of the two sums.
+    With weights b' and w' of the device, C' - C = sum (b'_i / w'_i)(a_i - C) / sum b'_i / w'_i, and the terms without a
+    prime add up to 0. Where the point moves by d, b' - b = d grad b, so that the sum moves by d sum grad b_i (a_i - C) / w_i.
+    To that come the roundings of b and the errors of w, each for itself, those of a, and the roundings of the two sums.
     """
     device = triangles.clip.device
     w, a = triangles.clip[..., 3], triangles.patch
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         relative = np.where(w.error < w.value, w.error / (w.value - w.error), np.inf)
         shares = weights.value / w.value[t]
-        off = (weights.error + np.abs(weights.value) * relative[t]) / w.value[t]
+        slopes = weights.gradient / w.value[t][:, :, None]
+        off = (weights.rounding + np.abs(weights.value) * relative[t]) / w.value[t]
         whole = shares.sum(axis=1)
         units = (MIX_ROUNDINGS * device.operation + device.quotient) * UNIT
-        room = whole - off.sum(axis=1) - units * np.abs(shares).sum(axis=1)
+        room = whole - off.sum(axis=1) - units * np.abs(shares).sum(axis=1) - weights.moved * _steepness(slopes)
         result = []
         for k in range(3):
             values, errors = a.value[t, :, k], a.error[t, :, k]
             value = (shares * values).sum(axis=1) / whole
-            moved = (off * np.abs(values - value[:, None]) + (np.abs(shares) + off) * errors).sum(axis=1)
+            away = values - value[:, None]
+            moved = weights.moved * _steepness(slopes * away[:, :, None])
+            blurred = (off * np.abs(away) + (np.abs(shares) + off) * errors).sum(axis=1)
             rounded = units * (np.abs(shares) * (np.abs(values) + np.abs(value)[:, None])).sum(axis=1)
-            error = np.where(room > 0.0, (moved + rounded) / room, np.inf) + device.quotient * UNIT * np.abs(value)
+            error = np.where(room > 0.0, (moved + blurred + rounded) / room, np.inf)
+            error += device.quotient * UNIT * np.abs(value)
             result.append(Bounded(value, np.where(np.isnan(error), np.inf, error), device))
     return stacked(result)
 
 
+def _steepness(gradients: Floats) -> Floats:
+    """(n,) how much a sum with these gradients (n, 3, 2) of its terms changes at most, where x and y move by 1."""
+    return np.asarray(np.abs(gradients.sum(axis=1)).sum(axis=1))
+
+
 def _linear(weights: _Weights, z: Bounded, t: Ints) -> Bounded:
-    """sum b_i z_i: as the weights add up to 1, z' - z = sum (b'_i - b_i)(z_i - z) + the errors of z_i and the roundings."""
+    """sum b_i z_i, which moves as its gradient says."""
     device = z.device
-    value = (weights.value * z.value[t]).sum(axis=1)
-    with np.errstate(invalid="ignore"):
-        moved = (weights.error * np.abs(z.value[t] - value[:, None])).sum(axis=1)
-        carried = ((np.abs(weights.value) + weights.error) * z.error[t]).sum(axis=1)
+    values = z.value[t]
+    value = (weights.value * values).sum(axis=1)
+    moved = weights.moved * _steepness(weights.gradient * values[:, :, None])
+    blurred = (weights.rounding * np.abs(values - value[:, None])).sum(axis=1)
+    carried = ((np.abs(weights.value) + weights.rounding) * z.error[t]).sum(axis=1)
     units = (MIX_ROUNDINGS * device.operation + device.quotient) * UNIT
-    rounded = units * (np.abs(weights.value) * np.abs(z.value[t])).sum(axis=1)
-    error = moved + carried + rounded
+    error = moved + blurred + carried + units * (np.abs(weights.value) * np.abs(values)).sum(axis=1)
     return Bounded(value, np.where(np.isnan(error), np.inf, error), device)
