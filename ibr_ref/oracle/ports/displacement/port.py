@@ -21,16 +21,17 @@ class Port(Shade, Resolve, Raster):
 
     def render(self) -> dict[str, NDArray[np.generic]]:
         """All stage arrays of the contract but the margins, "color" (H, W, 3) and "depth" (H, W)."""
-        corners, drawn, triangles = [], [], 0
+        clip, corners, drawn, triangles = [np.zeros((0, 4))], [np.zeros((0, 3))], [], 0
         for patch in self.patches():
             quads = self.quads(patch)
-            corners += quads
+            clip += [quad.clip for quad in quads]
+            corners += [self.written_corners(patch, quad) for quad in quads]
             fragments = self.fragments(quads, triangles)
             triangles = int(fragments.triangle.max(initial=triangles)) + 1
             hits = self.march(patch, fragments)
             drawn.append(Drawn(patch, fragments, hits, self.shade(patch, hits)))
         return {
-            "vertex.clip": np.concatenate([np.zeros((0, 4)), *(quad.clip for quad in corners)]),
-            "vertex.patch": np.concatenate([np.zeros((0, 3)), *(quad.patch for quad in corners)]),
+            "vertex.clip": np.concatenate(clip),
+            "vertex.patch": np.concatenate(corners),
             **self.resolve(drawn),
         }
