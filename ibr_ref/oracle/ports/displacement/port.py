@@ -1,7 +1,10 @@
 """Protruded displacement mapping as someone ports it: NumPy, one array operation for all fragments of a volume.
 
-Written from the pages of the contract alone, without a look at the package's kernels. Each operation in which a bug can
-hide is a method of its own, so that a broken port is a subclass that overrides one.
+Written from the pages of the contract, without a look at the method's kernels (those of the shared rasterizer were known).
+Three rules that the pages leave open were settled by trial against the reference: a hit at k = K is none on the volume's
+sides too; a fragment on a side's lower edge, h = 0, lies over the polygon; a mapped normal that vanishes gives n.
+
+Each operation in which a bug can hide is a method of its own, so that a broken port is a subclass that overrides one.
 
 It has no guard band: no corner may come nearer to the eye than that its window coordinates stay below 2^22 pixels.
 """
