@@ -89,6 +89,15 @@ def slope() -> tuple[Scene, Params]:
     return Scene(polygons=[sheared()], camera=camera, light=light), Params(shadow_steps=7, steep_threshold=0.15)
 
 
+def coarse() -> tuple[Scene, Params]:
+    """Linear steps longer than the threshold of steepness, on noise."""
+    camera = looking(eye=(2.0, -1.9, 1.3), target=(1.3, -0.35, 0.2), vertical_fov=30.0)
+    polygon = sheared(height_map=noise(15, 18, seed=4))
+    return Scene(polygons=[polygon], camera=camera, light=Light(direction=(0.4, -0.5, 1.0))), Params(
+        linear_steps=4, steep_threshold=0.03
+    )
+
+
 def mapped() -> tuple[Scene, Params]:
     """A normal map on the sheared polygon; coarse steps, no binary search."""
     camera = looking(eye=(0.2, -1.9, 1.2), target=(1.3, -0.3, 0.2), vertical_fov=32.0)
@@ -101,8 +110,8 @@ def tiles() -> tuple[Scene, Params]:
     """Repeated maps, the base alone, and the depth of the polygon."""
     camera = looking(eye=(0.6, -1.7, 1.3), target=(1.3, -0.3, 0.1), vertical_fov=34.0)
     polygon = sheared(height_map=noise(11, 14), normal_map=0.4 + 0.5 * noise(7, 5, 3, seed=3), domain="repeat")
-    scene = Scene(polygons=[polygon], camera=camera, light=Light(direction=(0.2, 0.3, 1.0), specular=0.5))
-    return scene, Params(linear_steps=15, faces="base", depth="polygon", shadow_steps=3)
+    scene = Scene(polygons=[polygon], camera=camera, light=Light(direction=(-0.8, 0.6, 0.5), specular=0.5))
+    return scene, Params(linear_steps=15, faces="base", depth="polygon", shadow_steps=5)
 
 
 def street() -> tuple[Scene, Params]:
@@ -119,26 +128,32 @@ def beside() -> tuple[Scene, Params]:
     return Scene(polygons=[sheared()], camera=camera, light=light), Params(linear_steps=20, interval="volume")
 
 
-def low() -> tuple[Scene, Params]:
-    """The paper's interval from an eye inside the volume, near a wall: it finds hits behind itself."""
-    camera = looking(eye=(-0.05, -0.49, 0.13), target=(0.0, 0.3, 0.02), vertical_fov=80.0)
+def facing() -> tuple[Scene, Params]:
+    """The paper's interval from an eye below the top of the box that it faces: sides reach above the eye."""
+    camera = looking(eye=(-0.05, -0.49, 0.13), target=(0.0, 0.3, 0.12), vertical_fov=80.0)
     return Scene(polygons=[models.box()], camera=camera, light=Light(direction=(0.5, -0.8, 1.0))), Params()
 
 
 def planes() -> tuple[Scene, Params]:
     """The near and the far plane cut the volume."""
-    camera = looking(eye=(2.2, -1.5, 0.9), target=(1.2, -0.3, 0.2), near=1.1, far=2.0)
+    camera = looking(eye=(2.2, -1.5, 0.9), target=(1.2, -0.3, 0.2), near=1.3, far=2.0)
     return Scene(polygons=[sheared()], camera=camera, light=Light(direction=(0.3, -0.5, 1.0))), Params(linear_steps=16)
 
 
 def crossing() -> tuple[Scene, Params]:
-    """One polygon through another, and a third that lies on the first with the same heights in other colours."""
-    first = sheared()
+    """One polygon through another."""
     upright = sheared(corner=(0.8, -0.9, -0.1), edge_u=(0.3, 1.2, 0.1), edge_v=(0.1, -0.05, 0.7), height_scale=0.15)
     camera = looking(eye=(2.6, -1.4, 1.2), target=(1.2, -0.2, 0.2))
-    polygons = [first, upright, sheared(color_map=noise(9, 13, 3, seed=7))]
+    polygons = [sheared(), upright]
     scene = Scene(polygons=polygons, camera=camera, light=Light(direction=(0.3, -0.5, 1.0)), background=(0.2, 0.3, 0.1))
     return scene, Params(linear_steps=16)
+
+
+def coincident() -> tuple[Scene, Params]:
+    """Two polygons in the same place, with the same heights, in different colours: the first is seen."""
+    camera = looking(eye=(2.6, -1.4, 1.2), target=(1.2, -0.2, 0.2))
+    polygons = [sheared(), sheared(color_map=noise(9, 13, 3, seed=7))]
+    return Scene(polygons=polygons, camera=camera, light=Light(direction=(0.3, -0.5, 1.0))), Params(linear_steps=16)
 
 
 def from_above() -> tuple[Scene, Params]:
@@ -182,15 +197,100 @@ SCENES: dict[str, Callable[[], tuple[Scene, Params]]] = {
         city,
         blocks,
         slope,
+        coarse,
         mapped,
         tiles,
         street,
         beside,
-        low,
+        facing,
         planes,
         crossing,
+        coincident,
         from_above,
         lamp,
         dusk,
     )
 }
+
+USUAL = "slope"
+"""Where most bugs show: steep walls with a facade, self-shadow, a lamp, a highlight, sheared edges of unequal lengths."""
+
+SHOWN_IN: dict[str, tuple[str, ...]] = {
+    # Above the usual: extended faces, no perspective, several polygons.
+    "blocks": (
+        "clip z from -w",
+        "extended base without the polygon",
+        "extended base from the middle of the volume",
+        "parallel lines of sight towards a point",
+        "normals in 8 bits",
+        "specular off by 2 %",
+        "eye of parallel lines as a point",
+        "reflection the wrong way",
+        "GREATER",
+        "no depth test",
+        "depth of the face",
+    ),
+    # A repeated map, a normal map with a facade, depth="polygon", first steps that stop at once.
+    "tiles": (
+        "varyings in half precision",
+        "lattice of K - 1 steps",
+        "first sample left out",
+        "repeated heights clamped",
+        "one halving left out",
+        "hit half a lattice step early",
+        "height before in 8 bits",
+        "mapped normal decoded from 127",
+        "highlights on the far side",
+        "shadow ray to the border of a repeated map",
+        "depth of the hit",
+    ),
+    # A normal map, no binary search.
+    "mapped": (
+        "1/16 subpixels",
+        "stops a little above the surface",
+        "heights in 8 bits",
+        "height of the hit from the map",
+        "mapped normal not normalized",
+        "mapped normal in [0, 1]",
+        "tangent frame left-handed",
+    ),
+    # Many steps, ground between buildings, a low sun, a background.
+    "city": (
+        "last linear step left out",
+        "stops a little below the surface",
+        "no ground",
+        "hits at h = 0 are hits",
+        "gradient threshold 1/256",
+        "diffuse off by 1 %",
+        "highlights in the shadow",
+        "shadow ray to the top only",
+        "black background",
+    ),
+    # The near and the far plane cut the volume.
+    "planes": (
+        "near plane of z in [-w, w]",
+        "far plane not clipped",
+        "hits in front of the near plane",
+        "border's height before the map",
+    ),
+    # Pixel centres on edges.
+    "from_above": ("all borders covered", "no borders covered"),
+    # Smooth colours, no highlight.
+    "box": ("colours in half precision", "colours truncated to bytes", "colours in 256 steps"),
+    # Polygons that cross.
+    "crossing": ("ambient off by 2 %", "first fragment wins", "depth offset"),
+    # A lamp inside the volume, colours above 1.
+    "lamp": ("no clamp", "shadows from behind the lamp"),
+    "facing": ("rays that go down are kept",),
+    "street": ("search from behind the eye",),
+    "beside": ("entry through the top only",),
+    "coarse": ("delta on the size of the difference",),
+    "dusk": ("no horizon",),
+    "coincident": ("LEQUAL",),
+}
+"""Scenes of the mutants that `USUAL` does not show, or does not show as small as they are meant to be."""
+
+
+def scene_of(mutant: str) -> str:
+    """The name of the scene that shows a mutant."""
+    return next((scene for scene, names in SHOWN_IN.items() if mutant in names), USUAL)

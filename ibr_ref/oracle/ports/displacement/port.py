@@ -1,7 +1,10 @@
 """Protruded displacement mapping as someone ports it: NumPy, one array operation for all fragments of a volume.
 
-Written from the pages of the contract alone, without a look at the package's kernels. Each operation in which a bug can
-hide is a method of its own, so that a broken port is a subclass that overrides one.
+Written from the pages of the contract, without a look at the method's kernels (those of the shared rasterizer were known).
+Three rules that the pages leave open were settled by trial against the reference: a hit at k = K is none on the volume's
+sides too; a fragment on a side's lower edge, h = 0, lies over the polygon; a mapped normal that vanishes gives n.
+
+Each operation in which a bug can hide is a method of its own, so that a broken port is a subclass that overrides one.
 
 It has no guard band: no corner may come nearer to the eye than that its window coordinates stay below 2^22 pixels.
 """
@@ -21,16 +24,17 @@ class Port(Shade, Resolve, Raster):
 
     def render(self) -> dict[str, NDArray[np.generic]]:
         """All stage arrays of the contract but the margins, "color" (H, W, 3) and "depth" (H, W)."""
-        corners, drawn, triangles = [], [], 0
+        clip, corners, drawn, triangles = [np.zeros((0, 4))], [np.zeros((0, 3))], [], 0
         for patch in self.patches():
             quads = self.quads(patch)
-            corners += quads
+            clip += [quad.clip for quad in quads]
+            corners += [self.written_corners(patch, quad) for quad in quads]
             fragments = self.fragments(quads, triangles)
             triangles = int(fragments.triangle.max(initial=triangles)) + 1
             hits = self.march(patch, fragments)
             drawn.append(Drawn(patch, fragments, hits, self.shade(patch, hits)))
         return {
-            "vertex.clip": np.concatenate([np.zeros((0, 4)), *(quad.clip for quad in corners)]),
-            "vertex.patch": np.concatenate([np.zeros((0, 3)), *(quad.patch for quad in corners)]),
+            "vertex.clip": np.concatenate(clip),
+            "vertex.patch": np.concatenate(corners),
             **self.resolve(drawn),
         }

@@ -125,6 +125,10 @@ class Vertex(Case):
         clip = self.to_clip(self.to_world(patch, list(corners.T)))
         return Quad(face, self.do.number(corners), np.stack(np.broadcast_arrays(*clip), axis=-1))
 
+    def written_corners(self, patch: Patch, quad: Quad) -> Floats:
+        """(4, 3) corners in patch space as they are handed in."""
+        return quad.patch
+
     def extended_corners(self, eye: Vector) -> Floats:
         """(4, 3) the base enlarged to where the whole volume is seen before its plane (section 3.2.1)."""
         shadows = [self.top_corner_on_ground(eye, corner) for corner in QUADS[TOP]]
