@@ -16,7 +16,6 @@ from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
-
 from ibr_ref.oracle.referees.displacement.constants import Constants
 from ibr_ref.oracle.referees.displacement.hits import CHUNK, Hits, joined_hits, no_hits, window_depth
 from ibr_ref.oracle.referees.displacement.image import Candidates, candidates_of

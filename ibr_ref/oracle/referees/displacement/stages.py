@@ -18,7 +18,6 @@ from ibr_ref.oracle.referees.displacement.hits import Hits, hits_of
 from ibr_ref.oracle.referees.displacement.image import judged
 from ibr_ref.oracle.referees.displacement.raster import Fragments
 from ibr_ref.oracle.referees.displacement.replay import (
-    ARRAYS,
     Port,
     light_input,
     march_field,
