@@ -71,10 +71,12 @@ def soft_quality(scenes: list[Scene], params: Params, maps: Maps | MapGrid | Non
     return float(np.mean(found))
 
 
-def soft_shadow(scene: Scene, params: Params, maps: Maps | MapGrid | None = None) -> Array:
-    """(H, W) the shadow in the picture; many light samples in batches."""
-    samples = params.light_samples
-    if not isinstance(samples, np.ndarray) or len(samples) <= _BATCH:
+def soft_shadow(
+    scene: Scene, params: Params, maps: Maps | MapGrid | None = None, samples: int | Array | None = None
+) -> Array:
+    """(H, W) the shadow in the picture. samples: any number of light samples, not those of params."""
+    if not isinstance(samples, np.ndarray):
+        params = params if samples is None else replace(params, light_samples=samples)
         return np.asarray(render(scene, params, maps=maps).stages["accumulate.shadow"])
     total = np.zeros((scene.camera.height, scene.camera.width))
     for first in range(0, len(samples), _BATCH):
@@ -133,15 +135,14 @@ def _warp(name: str, size: int, quality: str, columns: int, samples: int) -> Non
 def _soft(name: str, size: int) -> None:
     """Few light samples, rendered and warped, against many rendered ones; and warped against the same rendered ones."""
     scenes = stages(name, AREA_OFFSETS, 320, 240)
-    plain = Params(map_size=size, method="direct")
-    many = replace(plain, light_samples=light_samples(scenes[0], AREA_CELLS**2))
-    limits = [soft_shadow(s, many) for s in scenes]
+    rendered = Params(map_size=size, method="direct")
+    limits = [soft_shadow(s, rendered, samples=light_samples(s, AREA_CELLS**2)) for s in scenes]
     for count in COUNTS:
-        rendered = replace(plain, light_samples=light_samples(scenes[0], count))
-        warped = replace(rendered, method="warp")
+        samples = light_samples(scenes[0], count)
+        warped = Params(map_size=size, light_samples=samples)
         maps = prepare(scenes[0], warped, controls="best")
-        direct = [soft_shadow(s, rendered) for s in scenes]
-        ours = [soft_shadow(s, warped, maps) for s in scenes]
+        direct = [soft_shadow(s, rendered, samples=samples) for s in scenes]
+        ours = [soft_shadow(s, warped, maps, samples) for s in scenes]
         pairs = (direct, limits), (ours, direct), (ours, limits)
         means = [np.mean([soft_difference(a, b) for a, b in zip(*pair, strict=True)]) for pair in pairs]
         print(f"{name:<8} {size:<6} {count:<9}" + "".join(f"{mean:<22.4f}" for mean in means), flush=True)

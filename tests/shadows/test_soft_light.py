@@ -50,8 +50,8 @@ def test_samples_converge_to_the_area_light() -> None:
     assert ((truth > 0.0) & (truth < 1.0)).mean() > 0.2
     found = {}
     for count in (1, 5, 9, 64, 256):
-        rendered = params(map_size=1024, method="direct", light_samples=light_samples(seen, count))
-        found[count] = soft_difference(soft_shadow(seen, rendered), truth)
+        rendered = params(map_size=1024, method="direct")
+        found[count] = soft_difference(soft_shadow(seen, rendered, samples=light_samples(seen, count)), truth)
     values = list(found.values())
     assert values == sorted(values, reverse=True), found
     assert found[9] < 0.06, found
@@ -61,23 +61,23 @@ def test_samples_converge_to_the_area_light() -> None:
 @pytest.mark.parametrize("name", ["chair", "kettle"])
 def test_samples_of_a_real_caster_converge_and_the_warp_stays_off(name: str) -> None:
     seen = models.shadow_stage(getattr(models, name)(), offset=(0.31, -0.24), width=64, height=48)
-    plain = params(map_size=96, method="direct")
-    limit = soft_shadow(seen, replace(plain, light_samples=light_samples(seen, 576)))
+    rendered, warping = params(map_size=96, method="direct"), params(map_size=96, rows=15, columns=5)
+    limit = soft_shadow(seen, rendered, samples=light_samples(seen, 576))
     direct, warped = {}, {}
     for count in (1, 9, 64):
-        rendered = replace(plain, light_samples=light_samples(seen, count))
-        ours = replace(rendered, method="warp", rows=15, columns=5)
-        truth = soft_shadow(seen, rendered)
+        samples = light_samples(seen, count)
+        maps = prepare(seen, replace(warping, light_samples=samples))
+        truth = soft_shadow(seen, rendered, samples=samples)
         direct[count] = soft_difference(truth, limit)
-        warped[count] = soft_difference(soft_shadow(seen, ours, prepare(seen, ours)), truth)
+        warped[count] = soft_difference(soft_shadow(seen, warping, maps, samples), truth)
     assert direct[1] > direct[9] > direct[64] > 0.0, direct
     assert direct[64] < direct[1] / 2, direct
     assert 0.0 < max(warped.values()) < 0.15, warped
 
 
 def test_batches_add_up() -> None:
-    seen = plate_over_floor()
-    cells = light_samples(seen, 81)
-    many = params(method="direct", light_samples=cells)
-    one_by_one = [soft_shadow(seen, params(method="direct", light_samples=cells[i : i + 1])) for i in range(81)]
-    assert np.allclose(soft_shadow(seen, many), np.mean(one_by_one, axis=0), atol=1e-12, rtol=0)
+    seen, samples = plate_over_floor(), light_samples(plate_over_floor(), 81)
+    assert isinstance(samples, np.ndarray)
+    one_by_one = [soft_shadow(seen, params(method="direct", light_samples=samples[i : i + 1])) for i in range(81)]
+    together = soft_shadow(seen, params(method="direct"), samples=samples)
+    assert np.allclose(together, np.mean(one_by_one, axis=0), atol=1e-12, rtol=0)
