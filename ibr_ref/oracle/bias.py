@@ -1,16 +1,18 @@
 """Small systematic errors: the difference of port and reference, regressed on the image's derivative by each parameter.
 
 With D the derivative of the picture by a parameter p and r = port - reference, the change of p that fits best is
-c = sum(D r) / sum(D D). A legal device makes errors too; what it may seem to have changed has a derived bound, no tuned one.
-Each r_i lies within e_i, so |c| <= sum(|D| e) / sum(D D) always. Where the device rounds to the nearest everywhere (no
-weights in steps, bytes to the nearest), errors have mean zero and do not know of each other; then by Hoeffding's inequality
-|sum(D r)| <= sqrt(2 ln(2 / q) sum(D^2 e^2)) but for a probability of q, which is set to 10^-12. Bytes may also be truncated,
-which moves all of them by half a step: the regression is made with either and the smaller coefficient counts.
+c = sum(D r) / sum(D D). A legal device makes errors too; what it may seem to have changed has a derived bound: each r_i lies
+within e_i, so |c| <= sum(|D| e) / sum(D D). No statistics: legal errors are not independent. A constant that is rounded once
+moves every pixel the same way, and all pixels of one colour are rounded alike.
+
+Of floats e is half the width of the accepted set, so a picture whose pixels are all legal has no guilty coefficient. Bytes
+are where small errors hide: most APIs allow either neighbour, pixel by pixel, but a device has one way to make bytes. So r
+is the difference from the byte that the nearest, or truncation, makes of the reference, and e one step only where the
+accepted set reaches over the border between two bytes. A coefficient that is too large by every way is a FAIL.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -25,10 +27,10 @@ from ibr_ref.oracle.verdict import Bias
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-IMPROBABLE = 1e-12
-"""q above: one port in 10^12 is accused wrongly for each parameter."""
 MOST_EXPLAINED = 0.5
-"""Of a failed port's difference: below, a parameter's change is no explanation worth printing."""
+"""Of a failed port's squared difference: a change that explains less than half is no explanation worth printing."""
+PRODUCT = 255.0 * UNIT
+"""Rounding of 255 c in float32, the number that becomes a byte."""
 
 
 def biases(case: Case, handed: Handed, image: Judgement, device: Device, *, wrong: bool) -> tuple[Bias, ...]:
@@ -43,7 +45,7 @@ def biases(case: Case, handed: Handed, image: Judgement, device: Device, *, wron
         bias = _bias(case, parameter, color, image, device)
         if bias is None:
             continue
-        guilty = abs(bias.looks_like - bias.value) > bias.legal
+        guilty = _excess(bias) > 0.0
         if guilty and (not wrong or bias.explained > MOST_EXPLAINED):
             found.append(bias)
     return tuple(sorted(found, key=lambda bias: -bias.explained)[:3])
@@ -60,23 +62,26 @@ def _bias(
     power = float((d * d).sum())
     if power == 0.0:
         return None
-    error = np.broadcast_to(_errors(image, color, device)[used][:, None], d.shape)
-    legal = _legal(d, error, power, device) + abs(parameter.value) * 4.0 * UNIT
     best = None
-    for residual in _residuals(color, middle, device):
-        r = residual[used]
+    for residual, error in _residuals(color, middle, image, device):
+        r, e = residual[used], np.broadcast_to(error, residual.shape)[used]
         change = float((d * r).sum()) / power
         total = float((r * r).sum())
-        explained = change * change * power / total if total else 0.0
-        if best is None or abs(change) < abs(best.looks_like - best.value):
-            best = Bias(
-                parameter=parameter.name,
-                value=parameter.value,
-                looks_like=parameter.value + change,
-                explained=min(explained, 1.0),
-                legal=legal,
-            )
+        bias = Bias(
+            parameter=parameter.name,
+            value=parameter.value,
+            looks_like=parameter.value + change,
+            explained=min(change * change * power / total, 1.0) if total else 0.0,
+            legal=float((np.abs(d) * e).sum()) / power + abs(parameter.value) * 4.0 * UNIT,
+        )
+        if best is None or _excess(bias) < _excess(best):
+            best = bias
     return best
+
+
+def _excess(bias: Bias) -> float:
+    """How far beyond what is legal."""
+    return abs(bias.looks_like - bias.value) - bias.legal
 
 
 def _derivative(parameter: Parameter, middle: Floats) -> tuple[Floats, Bools]:
@@ -95,7 +100,8 @@ def _derivative(parameter: Parameter, middle: Floats) -> tuple[Floats, Bools]:
             return np.zeros_like(middle), np.zeros(middle.shape[:2], np.bool_)
         change, bend = whole - middle, whole + middle - 2.0 * half
         derivative = change / (sign * parameter.step)
-    return derivative, (np.abs(bend) <= 0.1 * np.abs(change)).all(axis=-1)
+    smooth = np.abs(bend) <= 0.1 * np.abs(change)  # a picture that jumps bends by as much as it changes
+    return derivative, np.asarray(smooth.all(axis=-1), np.bool_)
 
 
 def _moved(parameter: Parameter, step: float) -> Floats | None:
@@ -106,26 +112,17 @@ def _moved(parameter: Parameter, step: float) -> Floats | None:
         return None
 
 
-def _errors(image: Judgement, color: NDArray[np.generic], device: Device) -> Floats:
-    """(H, W) the most that a legal pixel lies from the reference."""
-    step = device.byte / 255.0 if color.dtype == np.uint8 else 0.0
-    return np.nan_to_num(image.width) / 2.0 + step
-
-
-def _residuals(color: NDArray[np.generic], middle: Floats, device: Device) -> Iterator[Floats]:
-    """Port minus reference, by each legal way of making bytes."""
+def _residuals(
+    color: NDArray[np.generic], middle: Floats, image: Judgement, device: Device
+) -> Iterator[tuple[Floats, Floats]]:
+    """(H, W, 3) port minus reference and the most that a legal device's may be, by each way of making bytes."""
+    reach = np.nan_to_num(image.width)[..., None] / 2.0
     if color.dtype != np.uint8:
-        yield color.astype(np.float64) - middle
+        yield color.astype(np.float64) - middle, reach
         return
-    yield color.astype(np.float64) / 255.0 - middle
-    if device.byte > 0.6:  # the device may truncate: then a byte stands for what is half a step above, in the mean
-        yield (color.astype(np.float64) + 0.5) / 255.0 - middle
-
-
-def _legal(d: Floats, error: Floats, power: float, device: Device) -> float:
-    """The largest change that a legal device seems to have made."""
-    certain = float((np.abs(d) * error).sum()) / power
-    if device.weight_step > 0.0:
-        return certain  # truncated weights move all fetches the same way
-    likely = math.sqrt(2.0 * math.log(2.0 / IMPROBABLE) * float((d * d * error * error).sum())) / power
-    return min(certain, likely)
+    nearest_only = device.byte < 1.0
+    slack = PRODUCT + (device.byte - 0.5 if nearest_only else 0.0)
+    for offset in (0.5,) if nearest_only else (0.5, 0.0):
+        steps = 255.0 * np.clip(middle, 0.0, 1.0) + offset
+        low, high = (np.floor(steps + side * (255.0 * reach + slack)) for side in (-1.0, 1.0))
+        yield (color.astype(np.float64) - np.floor(steps)) / 255.0, (high - low) / 255.0

@@ -54,7 +54,7 @@ class PlainReferee:
         for i, name in reversed([*enumerate(names)]):
             ours = case.frame.color if name == "color" else case.frame.stages[name]
             theirs = np.asarray(handed[name], np.float64) / (255.0 if handed[name].dtype == np.uint8 else 1.0)
-            slack = 0.5 / 255.0 + 1e-9 if handed[name].dtype == np.uint8 else off
+            slack = device.byte / 255.0 + 1e-9 if handed[name].dtype == np.uint8 else off
             with np.errstate(invalid="ignore"):
                 same = (theirs == ours) | (abs(theirs - ours) <= slack) | (np.isnan(ours) & np.isnan(theirs))
             blame[~same.reshape(*size, -1).all(axis=-1)] = i

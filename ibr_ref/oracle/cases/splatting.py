@@ -136,7 +136,7 @@ def among() -> Case:
     light = Light(position=(0.0, 0.3, -0.5), specular=0.2, exponent=0)
     scene = Scene(images=[image], camera=view, light=light, background=(0.9, 0.5, 0.1))
     about = "An eye among the points: behind it, before the near plane, beyond the far one, filling the picture."
-    return case("among", "adversarial", about, "ieee32", scene, Params(alpha=7.0, beta=2.0, delta=0.1, max_width=40.0))
+    return case("among", "adversarial", about, "ieee32", scene, Params(alpha=25.0, beta=2.0, delta=0.1, max_width=60.0))
 
 
 def dust() -> Case:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.files.problem import Problem
 from ibr_ref.oracle.files.write import color_bytes
+from ibr_ref.oracle.schema.stages import flat
 
 Bytes = NDArray[np.uint8]
 
@@ -39,9 +40,10 @@ def content_problems(case: Case, handed: Mapping[str, Any], files: Mapping[str, 
             problems += _number_problems(files.get(name, name), handed[name])
     if not problems and "color" in handed:
         problems += _blank(case, as_bytes(handed["color"]), files.get("color", "color"))
-    for name, reference in case.frame.stages.items():
-        if name in handed and not isinstance(reference, tuple):
-            problems += _empty_stage(files.get(name, name), handed[name], reference)
+    stages = {name: array for name, array in handed.items() if name in case.frame.stages}
+    references = flat(case.frame.stages)
+    for name, array in flat(stages).items():
+        problems += _empty_stage(files.get(name, name), array, references[name])
     return problems
 
 

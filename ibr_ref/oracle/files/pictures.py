@@ -33,7 +33,7 @@ def read_bytes(path: Path, shapes: Sequence[tuple[int, ...]], name: object = Non
     size = struct.unpack(">II", data[16:24])[::-1]
     if size != (height, width):
         raise UnusableError(
-            name, f"{size[0]} rows of {size[1]} pixels{turned(size, shapes[0])}", f"{height} rows of {width}"
+            name, f"{size[0]} rows of {size[1]} pixels{turned(size, (height, width))}", f"{height} rows of {width}"
         )
     with naming(path):
         image = png.decode(data)

@@ -33,11 +33,11 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
         bad["atlas.rects"] = _flat([np.r_[differs, False][owner] for owner in owners])
     for name, bounds in texels(case, device).items():
         if name in handed:
-            pages = [_page(handed[name], i, bound.value.shape) for i, bound in enumerate(bounds)]
+            pages = [page_of(handed[name], i, bound.value.shape) for i, bound in enumerate(bounds)]
             bad[name] = _flat([~_all(bound.allows(page)) for bound, page in zip(bounds, pages, strict=True)])
             width = np.fmax(width, 2.0 * _flat([_rows(bound.error) for bound in bounds]))
     if "atlas.normal" in handed:
-        pages = [_page(handed["atlas.normal"], i, page.shape) for i, page in enumerate(stages["atlas.normal"])]
+        pages = [page_of(handed["atlas.normal"], i, page.shape) for i, page in enumerate(stages["atlas.normal"])]
         bad["atlas.normal"] = _flat([(owner < 0) & ~_all(page == 0) for owner, page in zip(owners, pages, strict=True)])
     return judgement("atlas", "texel", bad, np.zeros(len(width), np.bool_), width)
 
@@ -59,7 +59,7 @@ def _owners(rects: NDArray[np.int32], shapes: list[tuple[int, int]]) -> list[NDA
     return owners
 
 
-def _page(pages: Any, index: int, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def page_of(pages: Any, index: int, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """A page as the reference has it; texels that the port's has not are NaN."""
     result = np.full(shape, np.nan)
     if index < len(pages):
@@ -70,7 +70,7 @@ def _page(pages: Any, index: int, shape: tuple[int, ...]) -> NDArray[np.float64]
 
 
 def _all(allowed: Bools) -> Bools:
-    return allowed.all(axis=2) if allowed.ndim == 3 else allowed
+    return np.asarray(allowed.all(axis=2) if allowed.ndim == 3 else allowed, np.bool_)
 
 
 def _rows(error: NDArray[np.float64]) -> NDArray[np.float64]:

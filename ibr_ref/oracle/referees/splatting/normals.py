@@ -102,7 +102,8 @@ def steps(surface: Surface, axis: int) -> Steps:
     sizes, usable, maybe = {}, {}, {}
     for side in (1, -1):
         there = _shifted(surface.valid, axis, side, False) & surface.valid
-        other = Bounded(*(_shifted(a, axis, side, 0.0) for a in (surface.depth.value, surface.depth.error)), device)
+        values, errors = (_shifted(a, axis, side, 0.0) for a in (surface.depth.value, surface.depth.error))
+        other = Bounded(values, errors, device)
         size = _difference(other, surface.depth).absolute()
         margin, off = limit.value - size.value, limit.error + size.error
         sizes[side], usable[side] = size, there & (margin >= 0.0)
@@ -160,7 +161,7 @@ class Codes:
             found = codes[pixels[:, 0], pixels[:, 1]]
             fits = pixels[((low <= found) & (found <= high)).all(axis=1)]
             agrees[fits[:, 0], fits[:, 1]] = True
-        return agrees
+        return np.asarray(agrees, np.bool_)
 
     def _at(self, vector: list[Bounded], pixels: Ints) -> list[Bounded]:
         return [a[pixels[:, 0], pixels[:, 1]] for a in vector]

@@ -30,7 +30,7 @@ def parameters(case: Case) -> list[Parameter]:
         found += _components(
             case, f"light.{place}", getattr(light, place), lambda vector: _with_light(case, place, vector)
         )
-    found += _components(case, "background", case.scene.background, lambda color: _scene(case, background=color))
+    found += _components(case, "background", case.scene.background, lambda color: _scene(case, background=color), "rgb")
     if case.scene.camera.perspective:
         found += _components(case, "camera.eye", case.scene.camera.eye[:3], lambda eye: _with_eye(case, eye))
     return found
@@ -52,13 +52,15 @@ def _with_light(case: Case, place: str, vector: Any) -> Case:
     return _scene(case, light=replace(case.scene.light, **{place: vector}))
 
 
-def _components(case: Case, name: str, vector: Any, moved: Callable[[Any], Case]) -> list[Parameter]:
+def _components(
+    case: Case, name: str, vector: Any, moved: Callable[[Any], Case], letters: str = "xyz"
+) -> list[Parameter]:
     start = np.asarray(vector, np.float64)
 
     def component(axis: int) -> Callable[[float], Case]:
         return lambda value: moved(np.where(np.arange(3) == axis, value, start))
 
-    return [_of(case, f"{name}.{letter}", start[axis], component(axis)) for axis, letter in enumerate("xyz")]
+    return [_of(case, f"{name}.{letter}", start[axis], component(axis)) for axis, letter in enumerate(letters)]
 
 
 def _scene(case: Case, **changes: Any) -> Case:

@@ -77,20 +77,21 @@ def placed(case: Case, device: Device, points: Table) -> Placed:
 
 
 def transform(matrix: ArrayLike, point: Vector, device: Device) -> list[Bounded]:
-    """The rows of a matrix (rows, 4) applied to points of w = 1. Products with 0 and with 1 are exact."""
+    """The rows of a matrix (rows, 4) applied to points of w = 1."""
     return [_row(row, point, device) for row in np.asarray(matrix, np.float64)]
 
 
 def _row(row: NDArray[np.float64], point: Vector, device: Device) -> Bounded:
-    terms = []
-    for coefficient, coordinate in zip(row[:3], point, strict=True):
-        if abs(coefficient) == 1.0:
-            terms.append(coordinate if coefficient > 0.0 else -coordinate)
-        elif coefficient != 0.0:
-            terms.append(uploaded(coefficient, device) * coordinate)
-    if row[3] != 0.0 or not terms:
-        terms.append(uploaded(np.full_like(point[0].value, row[3]), device))
+    terms = [product for c, x in zip(row[:3], point, strict=True) for product in _products(float(c), x)]
+    terms += _products(float(row[3]), exact(np.ones_like(point[0].value), device))
     return total(terms) if len(terms) > 1 else terms[0]
+
+
+def _products(coefficient: float, x: Bounded) -> list[Bounded]:
+    """coefficient x, as terms of a sum. Where the device rounds correctly, 0 x is no term, and 1 x is x."""
+    if x.device.operation <= 1.0 and abs(coefficient) in (0.0, 1.0):
+        return [] if coefficient == 0.0 else [x if coefficient > 0.0 else -x]
+    return [uploaded(coefficient, x.device) * x]
 
 
 def _clip(case: Case, device: Device, points: Table, world: Vector, view: Vector) -> list[Bounded]:
@@ -144,7 +145,7 @@ def _over(a: Bounded, b: float) -> Bounded:
 
 def _by_row(row: tuple[float, float, float], u: Bounded, v: Bounded) -> Bounded:
     """A row of a (3, 3) matrix applied to (u, v, 1)."""
-    terms = [uploaded(a, u.device) * b for a, b in zip(row, (u, v), strict=False) if a != 0.0]
+    terms = [term for a, b in zip(row, (u, v), strict=False) for term in _products(a, b)]
     return total([*terms, uploaded(row[2], u.device)])
 
 
@@ -155,7 +156,7 @@ def joined(parts: Sequence[Bounded]) -> Bounded:
 
 
 def _window(ndc: Bounded, from_border: Bounded, size: int) -> Bounded:
-    """from_border / 2 . size, as the conventions have it, or ndc . size / 2 + size / 2, as viewports do: the larger."""
+    """from_border / 2 . size, as the conventions have it; or ndc . size / 2 + size / 2, as viewports do."""
     device = ndc.device
     scaled, half = from_border * exact(0.5 * size, device), exact(0.5 * size, device)
     viewport = total([ndc * half, exact(np.full_like(ndc.value, 0.5 * size), device)])
@@ -205,8 +206,7 @@ def _distance(camera: Any, world: Vector, view: Vector, device: Device) -> Bound
 def splat_width(params: Any, d: Bounded) -> Bounded:
     """alpha / (beta d^2 + gamma d + delta), clamped."""
     device = d.device
-    powers = [(params.beta, d * d), (params.gamma, d)]
-    terms = [uploaded(coefficient, device) * power for coefficient, power in powers if coefficient != 0.0]
+    terms = [*_products(params.beta, d * d), *_products(params.gamma, d)]
     terms.append(uploaded(np.full_like(d.value, params.delta), device))
     alpha = uploaded(params.alpha, device)
     width = alpha / total(terms) if len(terms) > 1 else correctly_rounded(alpha, terms[0])
@@ -236,7 +236,8 @@ def with_handed(points: Placed, handed: Handed, device: Device) -> tuple[Placed,
     for name in ("vertex.depth", "vertex.window", "vertex.width"):
         if name in given:
             value = given[name].value
-            kept = value > 0.0 if name == "vertex.width" else np.isfinite(value.reshape(len(value), -1)).all(axis=1)
+            finite = np.isfinite(value.reshape(len(value), -1)).all(axis=1)
+            kept = np.asarray(value > 0.0 if name == "vertex.width" else finite, np.bool_)
             doubtful = np.zeros_like(kept)
     for bound in given.values():
         kept = kept & np.isfinite(bound.value.reshape(len(kept), -1)).all(axis=1)

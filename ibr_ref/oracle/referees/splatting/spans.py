@@ -48,8 +48,10 @@ def axis(center: Bounded, width: Bounded, size: int) -> Axis:
     off = border(reference, width, device)
     first, stop = np.ceil(low - most - 0.5 - off), np.ceil(high + most - 0.5 + off)
     sure_first, sure_stop = np.ceil(high - least - 0.5 + off), np.ceil(low + least - 0.5 - off)
-    spans = (np.clip(np.nan_to_num(end), 0, size).astype(np.int64) for end in (first, stop, sure_first, sure_stop))
-    return Axis(*spans, low - device.splat_border, high + device.splat_border, reference)
+    first, stop, sure_first, sure_stop = (
+        np.clip(np.nan_to_num(end), 0, size).astype(np.int64) for end in (first, stop, sure_first, sure_stop)
+    )
+    return Axis(first, stop, sure_first, sure_stop, low - device.splat_border, high + device.splat_border, reference)
 
 
 def border(center: Floats, width: Bounded, device: Device) -> Floats:

@@ -114,7 +114,7 @@ def _pairs(
         certain = sure[splat] & _inside(across, splat, column) & _inside(down, splat, row)
         if shape == "disc":
             inner, outer = _disc(across, down, width, splat, row, column)
-            splat, row, column, certain = (a[outer] for a in (splat, row, column, certain & inner))
+            splat, row, column, certain = splat[outer], row[outer], column[outer], (certain & inner)[outer]
         yield splat, row, column, certain
         first = last
 
@@ -127,7 +127,7 @@ def _disc(across: Axis, down: Axis, width: Bounded, splat: Ints, row: Ints, colu
     """dx^2 + dy^2 <= w^2/4: for certain, perhaps. In floats: a difference, two squares and a sum; a square and a quarter."""
     device = width.device
     (near_x, far_x), (near_y, far_y) = (
-        _offsets(axis, splat, index + 0.5) for axis, index in ((across, column), (down, row))
+        _offsets(axis, splat, index.astype(np.float64) + 0.5) for axis, index in ((across, column), (down, row))
     )
     off = 5.0 * device.operation * UNIT  # differences count twice in squares, one rounding of squares, two of the sum
     least = np.maximum(width.low[splat] / 2.0 - device.splat_border, 0.0) ** 2 * (1.0 - 2.0 * device.operation * UNIT)

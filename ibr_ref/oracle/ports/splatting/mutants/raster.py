@@ -129,7 +129,7 @@ MUTANTS = (
     mutant(CenterOfThePixel),
     mutant(EighthsOfPixels),
     mutant(AtLeastOnePixel),
-    mutant(LessOrEqual),
+    mutant(LessOrEqual, hidden="points that tie are twins, of the same colour"),
     mutant(NoDepthTest),
     mutant(DepthOfSixteenBits, small=True),
     mutant(SquaresForDiscs),
