@@ -76,7 +76,7 @@ class Corners:
 
 
 def snapped(x: Bounded) -> tuple[Floats, Floats]:
-    """Where the reference snaps window coordinates, and how far a legal device's may lie from there: 0 or one step.
+    """Where the reference snaps window coordinates, and how far a legal device's may lie from there, in whole steps.
 
     With the nearest, ties to even, the outcome is certain unless a tie lies within the coordinate's error; where any
     rounding is legal, unless the coordinate lies on the raster exactly. Coarser rasters move by up to their own step.
@@ -87,8 +87,8 @@ def snapped(x: Bounded) -> tuple[Floats, Floats]:
     if device.subpixel_any or device.subpixel_bits != 8:
         on_raster = (steps == reference) & (x.error == 0.0) & (device.subpixel_bits >= 8)
         return reference / RASTER, np.where(on_raster, 0.0, max(2.0**-device.subpixel_bits, 1.0 / RASTER) + x.error)
-    to_tie = 0.5 - np.abs(steps - reference)
-    return reference / RASTER, np.where(to_tie > RASTER * x.error, 0.0, 1.0 / RASTER)
+    beyond_tie = RASTER * x.error - (0.5 - np.abs(steps - reference))
+    return reference / RASTER, np.where(beyond_tie < 0.0, 0.0, np.floor(beyond_tie) + 1.0) / RASTER
 
 
 def covered(x: Bounded, y: Bounded, width: int, height: int) -> Iterator[Covered]:

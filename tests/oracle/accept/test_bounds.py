@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.accept.bounded import Bounded, dot, lerp, power, unit, uploaded
-from ibr_ref.oracle.accept.coverage import covered
+from ibr_ref.oracle.accept.coverage import covered, snapped
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.accept.winners import winners
 from ibr_ref.oracle.device import GL, IEEE32, PROFILES, VULKAN, Device
@@ -107,6 +107,14 @@ def test_every_snapping_is_among_the_possible(rounding: str) -> None:
         assert (abs(weights - found.weights).max(axis=1)[finite] <= found.error[finite] + 1e-12).all()
         seen += len(found.rows)
     assert seen > 2_000
+
+
+@pytest.mark.parametrize("error", [1e-5, 1e-3, 0.02, 0.7])
+def test_a_coordinate_that_is_far_off_snaps_far_off(error: float) -> None:
+    x = np.random.default_rng(4).uniform(0, 40, 20_000)
+    at, off = snapped(Bounded(x, np.full(x.shape, error), IEEE32))
+    for moved in (x - error, x + error):
+        assert (abs(np.rint(256.0 * moved) / 256.0 - at) <= off).all()
 
 
 def _weights(corners: np.ndarray, y: np.ndarray, x: np.ndarray) -> np.ndarray:
