@@ -215,7 +215,7 @@ ELSEWHERE = {
     "maps-any-sample": "nearest",
     "maps-coverage-over-k2-1": "nearest",
     "maps-farthest-depth": "deep",
-    "maps-depth-16-bits": "deep",
+    "maps-depth-half-floats": "deep",
     "maps-linear-depth": "deep",
     "maps-unit-axes": "oblique",
     "warp-farther-image": "nearest",

@@ -65,11 +65,13 @@ class _Shifted(Port):
     surface_raster = _Lower
 
 
-@fault("16-bits", "depth is read back in 16 bits", small=True, hidden="the picture is made with the exact depth")
-class _Depth16(Port):
+@fault(
+    "half-floats", "depth is read back in half floats", small=True, hidden="the picture is made with the exact depth"
+)
+class _HalfDepth(Port):
     def render(self) -> Arrays:
         arrays = super().render()
-        return {**arrays, "depth": np.rint(arrays["depth"] * 65535.0) / 65535.0}
+        return {**arrays, "depth": arrays["depth"].astype(np.float16).astype(np.float64)}
 
 
 @fault("caster-not-moved", "the caster is drawn about its own origin")

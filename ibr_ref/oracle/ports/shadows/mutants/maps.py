@@ -102,10 +102,10 @@ class _FarthestDepth(Port):
     map_raster = _Farthest
 
 
-@fault("depth-16-bits", "the maps' depths are held in 16 bits", small=True, hidden=GIVEN)
-class _Depth16(Port):
+@fault("depth-half-floats", "the maps' depths are held in half floats", small=True, hidden=GIVEN)
+class _HalfDepths(Port):
     def nine_maps(self, positions: Floats) -> Floats:
-        return np.rint(super().nine_maps(positions) * 65535.0) / 65535.0
+        return super().nine_maps(positions).astype(np.float16).astype(np.float64)
 
 
 @fault("linear-depth", "the maps hold clip z over far, not window depth", hidden=GIVEN)

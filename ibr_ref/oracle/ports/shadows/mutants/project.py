@@ -55,10 +55,10 @@ class _NotClamped(Port):
         return r
 
 
-@fault("r-16-bits", "r is held in 16 bits", small=True)
-class _Depth16(Port):
+@fault("r-half-floats", "r is held in half floats", small=True)
+class _HalfDepth(Port):
     def clamped(self, r: Floats) -> Floats:
-        return np.rint(super().clamped(r) * 65535.0) / 65535.0
+        return super().clamped(r).astype(np.float16).astype(np.float64)
 
 
 @fault("outside-clamped", "beside the map its border is fetched")
