@@ -80,8 +80,8 @@ def scene(**changes: Any) -> Scene:
         "offset": (0.35, -0.4),
         "light": light(),
         "camera": camera(),
-        "ambient": 0.25,
-        "background": (0.6, 0.7, 0.9),
+        "ambient": 0.2,
+        "background": (0.61, 0.703, 0.9),
     }
     return Scene(**{**values, **changes})
 
@@ -135,19 +135,30 @@ def beside() -> Case:
     return case(around, params(rows=3, columns=3), "identity")
 
 
-def behind() -> Case:
-    """A low light: the wall reaches behind it, the floor beyond its far plane; the caster fills the map."""
-    low = light(position=(0.0, 0.0, 0.9), target=(0.3, 0.0, -1.0), vertical_fov=100.0, near=0.05, far=2.2)
-    tall = plate(0.6, 0.0, color=(0.8, 0.8, 0.2))
-    return case(
-        scene(
-            caster=tall,
-            receivers=[plate(6.0, -1.0), wall(1.6)],
-            light=low,
-            camera=camera(eye=(-1.5, -4.0, 2.0), target=(0.8, 0.0, 0.3)),
-        ),
-        params(),
+def border() -> Case:
+    """The same narrow light, and grids that no affine map joins."""
+    around = beside()
+    return case(around.scene, params(rows=4, columns=4), unfolded_controls(7, 4, 4))
+
+
+def low_light() -> Scene:
+    """A light between floor and ceiling: the ceiling is behind it, the floor reaches beyond its far plane."""
+    return scene(
+        caster=plate(0.6, 0.0, color=(0.8, 0.8, 0.2)),
+        receivers=[plate(6.0, -1.0), wall(1.6), plate(0.9, 2.4, color=(0.9, 0.9, 0.6))],
+        light=light(position=(0.0, 0.0, 0.9), target=(0.3, 0.0, -1.0), vertical_fov=100.0, near=0.2, far=1.8),
+        camera=camera(eye=(-1.5, -4.0, 2.0), target=(0.3, 0.0, 0.9), vertical_fov=60.0),
     )
+
+
+def behind() -> Case:
+    """Masks, a ceiling behind the light."""
+    return case(low_light(), params())
+
+
+def far() -> Case:
+    """Depths, a floor beyond the far plane."""
+    return case(low_light(), params(method="direct", content="depth", bias=2e-3))
 
 
 def direct() -> Case:
@@ -187,7 +198,9 @@ CASES: dict[str, Callable[[], Case]] = {
         deep,
         oblique,
         beside,
+        border,
         behind,
+        far,
         direct,
         filtered,
         coarse,
@@ -195,3 +208,49 @@ CASES: dict[str, Callable[[], Case]] = {
         grazing,
     )
 }
+
+
+ELSEWHERE = {
+    "maps-middle-not-clamped": "oblique",
+    "maps-any-sample": "nearest",
+    "maps-coverage-over-k2-1": "nearest",
+    "maps-farthest-depth": "deep",
+    "maps-depth-half-floats": "deep",
+    "maps-linear-depth": "deep",
+    "maps-unit-axes": "oblique",
+    "warp-farther-image": "nearest",
+    "warp-other-diagonal": "bent",
+    "warp-last-column-left-out": "beside",
+    "warp-no-fill-rule": "beside",
+    "warp-repeat": "border",
+    "warp-clamp-one-early": "border",
+    "warp-world-xy": "oblique",
+    "warp-direct-from-centre": "direct",
+    "warp-direct-back-faces": "direct",
+    "warp-direct-depth-truncated": "coarse",
+    "project-gl-depth": "deep",
+    "project-r-not-divided": "deep",
+    "project-r-not-clamped": "far",
+    "project-outside-clamped": "beside",
+    "project-behind-light": "behind",
+    "project-caster-exempt-from-depths": "deep",
+    "project-texel-rounded": "deep",
+    "project-repeat": "beside",
+    "project-bias-sign": "deep",
+    "project-no-bias": "deep",
+    "project-bias-doubled": "deep",
+    "project-or-equal": "coarse",
+    "project-quantize-truncates": "coarse",
+    "project-bias-after-quantize": "coarse",
+    "project-weights-exchanged": "filtered",
+    "project-pcf-of-depths": "filtered",
+    "project-pcf-three-taps": "filtered",
+    "resolve-turned-by-view-axis": "grazing",
+    "resolve-lequal": "twice",
+}
+"""Which scene shows a mutant, where `soft` does not, or hardly."""
+
+
+def shows(mutant: str) -> Case:
+    """The scene that shows a mutant."""
+    return CASES[ELSEWHERE.get(mutant, "soft")]()

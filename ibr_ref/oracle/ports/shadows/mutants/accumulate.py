@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.ports.arithmetic import Floats
-from ibr_ref.oracle.ports.shadows.mutants.catalogue import Catalogue
+from ibr_ref.oracle.ports.shadows.mutants.catalogue import BELOW_A_BYTE, Catalogue
 from ibr_ref.oracle.ports.shadows.port import Port
 
 fault = Catalogue("accumulate")
@@ -17,7 +17,7 @@ class _OneLess(Port):
         return self.ops.divide(1.0, max(1, count - 1))
 
 
-@fault("three-decimals", "alpha is written with three decimals", small=True)
+@fault("three-decimals", "alpha is written with three decimals", small=True, hidden=BELOW_A_BYTE)
 class _Decimals(Port):
     def alpha(self, count: int) -> Floats:
         return np.asarray(np.floor(1000.0 / count) / 1000.0)
@@ -29,7 +29,7 @@ class _AlphaByte(Port):
         return np.asarray(np.rint(255.0 / count) / 255.0)
 
 
-@fault("half-floats", "the sum is held in half floats", small=True)
+@fault("half-floats", "the sum is held in half floats", small=True, hidden=BELOW_A_BYTE)
 class _HalfFloats(Port):
     def stored(self, value: Floats) -> Floats:
         return np.asarray(super().stored(value), np.float16).astype(np.float64)
@@ -51,15 +51,3 @@ class _FirstTwice(Port):
 class _Over(Port):
     def blended(self, total: Floats, shadow: Floats, alpha: Floats) -> Floats:
         return self.ops.lerp(total, shadow, alpha)
-
-
-@fault("largest", "the largest of the samples' shadows is taken")
-class _Largest(Port):
-    def blended(self, total: Floats, shadow: Floats, alpha: Floats) -> Floats:
-        return np.maximum(total, shadow)
-
-
-@fault("alpha-twice", "the source is multiplied by alpha before it is blended by alpha")
-class _AlphaTwice(Port):
-    def blended(self, total: Floats, shadow: Floats, alpha: Floats) -> Floats:
-        return super().blended(total, self.ops.multiply(shadow, alpha), alpha)

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from ibr_ref.oracle.ports.faults import Mutant
 from ibr_ref.oracle.ports.shadows.port import Port
 
+BELOW_A_BYTE = "the picture changes by less than half a step of 8 bits: a PNG hardly shows it"
+
 
 class Catalogue:
     """The mutants of one stage, in order."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.ports.arithmetic import Floats
-from ibr_ref.oracle.ports.shadows.mutants.catalogue import Catalogue
+from ibr_ref.oracle.ports.shadows.mutants.catalogue import BELOW_A_BYTE, Catalogue
 from ibr_ref.oracle.ports.shadows.port import Port
 
 fault = Catalogue("controls")
@@ -31,21 +31,13 @@ class _MapsExchanged(Port):
         return super().controls().swapaxes(0, 1)
 
 
-@fault("v-upwards", "control points count v from the bottom row")
-class _Upwards(Port):
-    def controls(self) -> Floats:
-        points = super().controls().copy()
-        points[..., 1] = 1.0 - points[..., 1]
-        return points
-
-
 @fault("8-bits", "control points are held in a texture of bytes", small=True)
 class _Bytes(Port):
     def controls(self) -> Floats:
         return np.rint(super().controls() * 255.0) / 255.0
 
 
-@fault("half-floats", "control points are held in half floats", small=True)
+@fault("half-floats", "control points are held in half floats", small=True, hidden=BELOW_A_BYTE)
 class _HalfFloats(Port):
     def controls(self) -> Floats:
         return super().controls().astype(np.float16).astype(np.float64)

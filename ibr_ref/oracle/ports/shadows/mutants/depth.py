@@ -23,23 +23,13 @@ class _Farther(Port):
     surface_raster = _Greater
 
 
-class _Always(Raster):
-    def passes(self, depth: Floats, held: Floats) -> Flags:
-        return np.ones(depth.shape, np.bool_)
-
-
-@fault("no-test", "the surface drawn last stays")
-class _NoTest(Port):
-    surface_raster = _Always
-
-
 @fault("perspective", "window depth is interpolated as a varying")
 class _PerspectiveDepth(Port):
     def window_depth(self, raster: Raster, fragments: Fragments, z: Floats, w: Floats) -> Floats:
         return raster.perspective(fragments, w, [z])[0]
 
 
-@fault("gl-depth", "window depth is (z + 1)/2 of a z that is in [0, 1] already")
+@fault("gl-depth", "window depth is (z + 1)/2 of a z that is in [0, 1] already", hidden="the same surfaces are seen")
 class _GLDepth(Port):
     def window_depth(self, raster: Raster, fragments: Fragments, z: Floats, w: Floats) -> Floats:
         return self.ops.multiply(self.ops.add(super().window_depth(raster, fragments, z, w), 1.0), 0.5)
@@ -75,11 +65,13 @@ class _Shifted(Port):
     surface_raster = _Lower
 
 
-@fault("16-bits", "depth is read back in 16 bits", small=True, hidden="the picture is made with the exact depth")
-class _Depth16(Port):
+@fault(
+    "half-floats", "depth is read back in half floats", small=True, hidden="the picture is made with the exact depth"
+)
+class _HalfDepth(Port):
     def render(self) -> Arrays:
         arrays = super().render()
-        return {**arrays, "depth": np.rint(arrays["depth"] * 65535.0) / 65535.0}
+        return {**arrays, "depth": arrays["depth"].astype(np.float16).astype(np.float64)}
 
 
 @fault("caster-not-moved", "the caster is drawn about its own origin")

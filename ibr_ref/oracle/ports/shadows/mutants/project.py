@@ -9,7 +9,6 @@ from ibr_ref.oracle.ports.shadows.mutants.catalogue import Catalogue
 from ibr_ref.oracle.ports.shadows.port import Port
 from ibr_ref.oracle.ports.shadows.raster import Flags, Fragments, Ints, Raster
 from ibr_ref.oracle.ports.shadows.sampler import Sampler
-from ibr_ref.oracle.ports.shadows.surface import Surface
 
 fault = Catalogue("project")
 
@@ -38,12 +37,6 @@ class _HalfInMatrix(Port):
         return matrix
 
 
-@fault("not-divided", "s and t are not divided by q_w")
-class _NotDivided(Port):
-    def divided(self, q: list[Floats]) -> list[Floats]:
-        return [q[0], q[1], super().divided(q)[2]]
-
-
 @fault("r-not-divided", "r is compared before the division by q_w")
 class _DepthNotDivided(Port):
     def divided(self, q: list[Floats]) -> list[Floats]:
@@ -62,13 +55,19 @@ class _NotClamped(Port):
         return r
 
 
-@fault("outside-clamped", "beside the map its border is fetched", small=True)
+@fault("r-half-floats", "r is held in half floats", small=True)
+class _HalfDepth(Port):
+    def clamped(self, r: Floats) -> Floats:
+        return super().clamped(r).astype(np.float16).astype(np.float64)
+
+
+@fault("outside-clamped", "beside the map its border is fetched")
 class _OutsideClamped(Port):
     def in_map(self, s: Floats, t: Floats) -> Flags:
         return np.isfinite(s) & np.isfinite(t)
 
 
-@fault("behind-light", "the reverse projection behind the light casts shadows too")
+@fault("behind-light", "the reverse projection behind the light casts shadows too", small=True)
 class _BehindLight(Port):
     def before_light(self, w: Floats) -> Flags:
         return np.ones(w.shape, np.bool_)
@@ -80,7 +79,7 @@ class _OnCaster(Port):
         return np.zeros_like(casts)
 
 
-@fault("caster-exempt-from-depths", "the caster's own fragments are lit where depths are compared")
+@fault("caster-exempt-from-depths", "the caster's own fragments are lit where depths are compared", small=True)
 class _Exempt(Port):
     def exempt(self, casts: Flags) -> Flags:
         return casts
@@ -157,7 +156,7 @@ class _BiasSign(Port):
         return self.ops.add(r, self.ops.number(self.params.bias))
 
 
-@fault("no-bias", "the bias is left out")
+@fault("no-bias", "the bias is left out", small=True)
 class _NoBias(Port):
     def biased(self, r: Floats) -> Floats:
         return r
@@ -206,25 +205,9 @@ class _MixedDepths(Port):
         return self.compared(r, sampler.bilinear(image, s, t))
 
 
-@fault("pcf-even", "the four comparisons weigh the same")
-class _EvenWeights(Port):
-    def filtered(self, sampler: Sampler, image: Floats, s: Floats, t: Floats, r: Floats) -> Floats:
-        texels = sampler.taps(image, s, t)[0]
-        return self.ops.multiply(self.ops.sum([self.compared(r, texel) for texel in texels]), 0.25)
-
-
 @fault("pcf-three-taps", "the last of the four comparisons is the third again", small=True)
 class _ThreeTaps(Port):
     def filtered(self, sampler: Sampler, image: Floats, s: Floats, t: Floats, r: Floats) -> Floats:
         texels, fx, fy = sampler.taps(image, s, t)
         texels[3] = texels[2]
         return sampler.mix([self.compared(r, texel) for texel in texels], fx, fy)
-
-
-@fault("caster-left-behind", "world positions of the caster are those about its own origin")
-class _CasterLeftBehind(Port):
-    def projected(self, surface: Surface, place: Floats, image: Floats) -> tuple[Floats, Floats]:
-        shift = self.offset @ self.axes
-        world = [p - np.where(surface.casts, by, 0.0) for p, by in zip(surface.world, shift, strict=True)]
-        moved = Surface(surface.pixel, world, surface.color, surface.normal, surface.casts, surface.depth)
-        return super().projected(moved, place, image)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.ports.arithmetic import Floats
-from ibr_ref.oracle.ports.shadows.mutants.catalogue import Catalogue
+from ibr_ref.oracle.ports.shadows.mutants.catalogue import BELOW_A_BYTE, Catalogue
 from ibr_ref.oracle.ports.shadows.port import Arrays, Port
 from ibr_ref.oracle.ports.shadows.raster import Flags, Fragments, Raster
 from ibr_ref.oracle.ports.shadows.surface import Surface
@@ -31,13 +31,7 @@ class _AmbientShadowed(Port):
         return super().resolved(surface, np.zeros_like(shadow)) * (1.0 - shadow)[:, None]
 
 
-@fault("shadow-squared", "light falls with the square of the shadow")
-class _ShadowSquared(Port):
-    def visibility(self, shadow: Floats) -> Floats:
-        return super().visibility(self.ops.multiply(shadow, shadow))
-
-
-@fault("shadow-of-bytes", "the shadow is read from a texture of bytes, truncated", small=True)
+@fault("shadow-of-bytes", "the shadow is read from a texture of bytes, truncated", small=True, hidden=BELOW_A_BYTE)
 class _ShadowTruncated(Port):
     def visibility(self, shadow: Floats) -> Floats:
         return super().visibility(np.floor(shadow * 255.0) / 255.0)
@@ -61,7 +55,7 @@ class _NoMax(Port):
         return cosine
 
 
-@fault("turned-by-view-axis", "normals are turned by the view axis, not by the line of sight", small=True)
+@fault("turned-by-view-axis", "normals are turned by the view axis, not by the line of sight")
 class _TurnedByAxis(Port):
     def toward_eye(self, world: list[Floats]) -> list[Floats]:
         axis = self.ops.number(self.scene.camera.view_from_world[2, :3])
@@ -79,6 +73,26 @@ class _NormalLong(Port):
     def normals(self, world: list[Floats]) -> list[Floats]:
         first, second = ([self.ops.subtract(p[:, k], p[:, 0]) for p in world] for k in (1, 2))
         return self.cross(first, second)
+
+
+@fault(
+    "fast-inverse-root",
+    "l is normalized by bit tricks and one Newton step",
+    small=True,
+    hidden=BELOW_A_BYTE,
+)
+class _FastInverseRoot(Port):
+    def toward_light(self, world: list[Floats]) -> list[Floats]:
+        light = [self.ops.subtract(at, p) for p, at in zip(world, self.centre, strict=True)]
+        square = self.ops.dot(light, light).astype(np.float32)
+        guess = (np.int32(0x5F3759DF) - (square.view(np.int32) >> 1)).view(np.float32).astype(np.float64)
+        return [component * guess * (1.5 - 0.5 * square * guess * guess) for component in light]
+
+
+@fault("normal-half-floats", "normals are read from a texture of half floats", small=True, hidden=BELOW_A_BYTE)
+class _HalfNormals(Port):
+    def normals(self, world: list[Floats]) -> list[Floats]:
+        return [component.astype(np.float16).astype(np.float64) for component in super().normals(world)]
 
 
 @fault("light-from-target", "l is the direction from the light's target, the same everywhere")
@@ -106,6 +120,12 @@ class _ColorsLinear(Port):
         return [raster.linear(fragments, corner) for corner in corners]
 
 
+@fault("colors-of-bytes", "vertex colours are truncated to bytes", small=True)
+class _ColorsOfBytes(Port):
+    def colors(self, raster: Raster, fragments: Fragments, w: Floats, corners: list[Floats]) -> list[Floats]:
+        return super().colors(raster, fragments, w, [np.floor(corner * 255.0) / 255.0 for corner in corners])
+
+
 @fault("bgr", "colours come out blue first")
 class _BGR(Port):
     def render(self) -> Arrays:
@@ -124,6 +144,12 @@ class _RowsFlipped(Port):
 class _Black(Port):
     def background(self) -> Floats:
         return np.zeros(3)
+
+
+@fault("background-of-bytes", "the background is truncated to bytes", small=True)
+class _BackgroundOfBytes(Port):
+    def background(self) -> Floats:
+        return np.asarray(np.floor(super().background() * 255.0) / 255.0)
 
 
 @fault("bytes-truncated", "colours are truncated to bytes, not rounded", small=True)

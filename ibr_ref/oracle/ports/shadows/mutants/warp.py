@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.ports.arithmetic import Floats
-from ibr_ref.oracle.ports.shadows.mutants.catalogue import Catalogue
+from ibr_ref.oracle.ports.shadows.mutants.catalogue import BELOW_A_BYTE, Catalogue
 from ibr_ref.oracle.ports.shadows.port import Port
 from ibr_ref.oracle.ports.shadows.raster import Flags, Ints, Raster
 from ibr_ref.oracle.ports.shadows.sampler import Sampler
@@ -20,12 +20,6 @@ class _RowsMixedByS(Port):
         return self.between(rows, grids, grid, fraction[0])
 
 
-@fault("grid-by-s", "the last grid lies between the row grids at s")
-class _GridByS(Port):
-    def final_grid(self, top: Floats, bottom: Floats, fraction: Floats) -> Floats:
-        return self.ops.lerp(top, bottom, fraction[0])
-
-
 @fault("even-cells", "fractions are of half the range, though the middle line is not in its middle")
 class _EvenCells(Port):
     def fraction_in(self, at: float, ends: Floats) -> Floats:
@@ -33,7 +27,7 @@ class _EvenCells(Port):
         return self.ops.divide(self.ops.subtract(at, ends[0]), (line[2] - line[0]) / 2.0)
 
 
-@fault("fraction-8-bits", "fractions are rounded to 1/256", small=True)
+@fault("fraction-8-bits", "fractions are rounded to 1/256", small=True, hidden=BELOW_A_BYTE)
 class _Fraction8(Port):
     def fraction_in(self, at: float, ends: Floats) -> Floats:
         return np.asarray(np.rint(super().fraction_in(at, ends) * 256.0) / 256.0, np.float64)
@@ -45,17 +39,16 @@ class _CellExchanged(Port):
         return super().corners(array, cell[::-1])
 
 
-@fault("columns-for-rows", "the next map along x is taken downwards: 00, 01, 10, 11")
-class _ColumnsForRows(Port):
-    def corners(self, array: Floats, cell: NDArray[np.int32]) -> list[Floats]:
-        first, second, third, fourth = super().corners(array, cell)
-        return [first, third, second, fourth]
-
-
 @fault("always-first-cell", "the cell is found by truncation towards the first one")
 class _FirstCell(Port):
     def upper(self, at: float, middle: float) -> int:
         return 0
+
+
+@fault("grids-half-floats", "the grids of the rows are held in half floats", small=True, hidden=BELOW_A_BYTE)
+class _HalfGrids(Port):
+    def row_grid(self, first: Floats, second: Floats, fraction: Floats) -> Floats:
+        return super().row_grid(first, second, fraction).astype(np.float16).astype(np.float64)
 
 
 @fault("grids-exchanged", "source and target of the warp are exchanged")
@@ -70,12 +63,6 @@ class _MixReversed(Port):
         return super().mix(second, first, fraction)
 
 
-@fault("union-for-mix", "the warped images are united, not dissolved")
-class _Union(Port):
-    def mix(self, first: Floats, second: Floats, fraction: Floats) -> Floats:
-        return np.maximum(first, second) if self.params.content == "mask" else np.minimum(first, second)
-
-
 @fault("farther-image", 'the farther image is warped by policy "nearest"')
 class _Farther(Port):
     def nearer(self, fraction: float) -> int:
@@ -88,13 +75,13 @@ class _RowsNotWarped(Port):
         return self.between(rows, [grid, grid], grid, fraction[1])
 
 
-@fault("rows-truncated", "rows are truncated to bytes between the passes", small=True)
+@fault("rows-truncated", "rows are truncated to bytes between the passes", small=True, hidden=BELOW_A_BYTE)
 class _RowsTruncated(Port):
     def finished(self, rows: list[Floats], grids: list[Floats], grid: Floats, fraction: Floats) -> Floats:
         return super().finished([np.floor(row * 255.0) / 255.0 for row in rows], grids, grid, fraction)
 
 
-@fault("other-diagonal", "cells are cut along the other diagonal", small=True)
+@fault("other-diagonal", "cells are cut along the other diagonal")
 class _OtherDiagonal(Port):
     def halves(self, columns: int) -> list[Ints]:
         return [np.array([0, 1, columns]), np.array([1, columns + 1, columns])]
@@ -163,16 +150,6 @@ class _ClampEarly(Port):
     warp_sampler = _OneLess
 
 
-class _WeightsExchanged(Sampler):
-    def mix(self, texels: list[Floats], fx: Floats, fy: Floats) -> Floats:
-        return super().mix(texels, fy, fx)
-
-
-@fault("weights-exchanged", "the bilinear weights of x and y are exchanged")
-class _Weights(Port):
-    warp_sampler = _WeightsExchanged
-
-
 @fault("sample-sign", "the object moves with the sample of the light, not against it")
 class _SampleSign(Port):
     def place_of_object(self, place: Floats) -> Floats:
@@ -199,12 +176,6 @@ class _SamplesTransposed(Port):
 class _DirectFromCentre(Port):
     def direct_map(self, place: Floats) -> Floats:
         return super().direct_map(self.centre)
-
-
-@fault("direct-not-moved", '"direct" renders the caster about its own origin')
-class _DirectNotMoved(Port):
-    def direct_map(self, place: Floats) -> Floats:
-        return self.caster_map(self.direct_raster(self.ops), np.zeros(2), self.light_view(place))
 
 
 class _Back(Raster):
