@@ -25,9 +25,9 @@ def accumulated(shadows: Sequence[Bounded], unorm8: bool) -> Bounded:
     value = reduce(np.add, [weight * shadow.value for shadow in shadows])
     error = weight * reduce(np.add, [np.asarray(shadow.error) for shadow in shadows])
     size = weight * reduce(np.add, [shadow.size for shadow in shadows])
-    # 1 / N as a quotient and stored, a product, N - 1 sums.
-    rounding = gamma(device, 2.0 + count, 1.0) * size + 2.0 * count * TINY
-    return Bounded(value, error + rounding, device).between(0.0, 1.0)
+    # 1 / N as a quotient and stored, a product; N sums, in each of which the sum so far is a product with the factor 1.
+    rounding = gamma(device, 2.0 + 2.0 * count, 1.0) * size + 2.0 * count * TINY
+    return Bounded(value, error + rounding, device).between(-np.inf, 1.0)
 
 
 def _in_bytes(shadows: Sequence[Bounded], device: Device) -> Bounded:

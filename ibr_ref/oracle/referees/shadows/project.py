@@ -233,7 +233,7 @@ def _four(texels: Map, sides: _Sides, at: Coordinate) -> tuple[Bounded, Bounded,
         wide |= axis.error * size + device.weight_step >= 0.5  # more than one border may cut the box
     other[0, wide], other[1, wide], open_[wide] = 0.0, 1.0, True
     rounding = FILTER_ROUNDINGS * device.operation * UNIT
-    mixed = [centered(e[0], e[1], device).widened(np.where(at_rest, 0.0, rounding)) for e in (first, other)]
+    mixed = [centered(e[0], e[1], device).widened(rounding) for e in (first, other)]
     return mixed[0], mixed[1], open_
 
 

@@ -55,7 +55,7 @@ def controls(given: Inputs) -> Judgement | None:
     if found is None or given.direct:
         return None
     bound = uploaded(given.reference("controls", sampled=False), given.device)
-    right = bound.allows(found).all(axis=-1)
+    right = np.asarray(bound.allows(found).all(axis=-1))
     return judgement("controls", "control point", ["controls"], [right], 2.0 * bound.error.max(axis=-1))
 
 
@@ -130,8 +130,7 @@ def _points(given: Inputs, name: str, make: Callable[[int, Spot], Bounded], feed
     if found is None or given.direct:
         return None
     right, width = _compared(given, found, make)
-    right, width = right.all(axis=-1), width.max(axis=-1)
-    return _judged(given, "control point", name, right, width, feeds)
+    return _judged(given, "control point", name, np.asarray(right.all(axis=-1)), width.max(axis=-1), feeds)
 
 
 def _texels(given: Inputs, name: str, make: Callable[[int, Spot], Bounded], feeds: Sequence[str]) -> Judgement | None:

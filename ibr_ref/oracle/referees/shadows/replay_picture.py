@@ -128,8 +128,7 @@ def _outcomes(given: Inputs) -> Branches:
     if own is not None:
         shadows = [exact(s.reshape(-1)[seen.pixel], given.device) for s in own]
         return in_shadow(seen, accumulated(shadows, given.case.params.accumulation == "unorm8"))
-    coords = given.seen, given.own("project.coord")
-    shadows = []
+    coords, outcomes = given.own("project.coord"), []
     for i, lens in enumerate(given.lenses):
         at = coordinate(lens, seen.world)
         if coords is not None:

@@ -135,7 +135,8 @@ def see(case: Any, device: Device) -> Seen:
     width, height = int(scene.camera.width), int(scene.camera.height)
     objects = Objects.of(scene, device, places.offset(case, device))
     clip = Lens.of(scene.camera).clip_of(objects.points)
-    painted = [] if objects.plain.all() else objects.colors
+    one = exact(np.ones(len(objects.names)), device)
+    painted = [one] if objects.plain.all() else [one, *objects.colors]
     cut = clipped([*clip, *objects.points, *painted], objects.triangles, objects.names, width, height)
     found = fragments(cut.x, cut.y, width, height)
     triangles, owned = Triangles.of(cut.x, cut.y, width, height), owners(found, cut.names, width)
@@ -177,11 +178,16 @@ def _only(found: Fragments, kept: Bools) -> Fragments:
 
 
 def _colors(objects: Objects, source: Ints, varying: Sequence[Bounded]) -> list[Bounded]:
-    """(n,) channels: of meshes with one colour as it is, else interpolated."""
+    """(n,) channels: of meshes with one colour as it is, which a port may interpolate all the same, else interpolated.
+
+    varying: the number 1, of which the error is that of any constant, relative to it; and the channels, if some are painted.
+    """
+    one, *channels = varying
     plain = [color[objects.triangles[source, 0]] for color in objects.colors]
-    if not varying:
+    plain = [p.widened(p.size * one.error) for p in plain]
+    if not channels:
         return plain
-    return [p.where(objects.plain[source], v) for p, v in zip(plain, varying, strict=True)]
+    return [p.where(objects.plain[source], v) for p, v in zip(plain, channels, strict=True)]
 
 
 def _lit(

@@ -125,7 +125,7 @@ class Plane:
         t, size = found.triangle, np.abs(a)
         apart = np.abs(a - a[:, :1])
         sums: Floats = l[:, 0] * size[t, 0] + l[:, 1] * size[t, 1] + l[:, 2] * size[t, 2]
-        return np.maximum(sums, size[t, 0] + l[:, 1] * apart[t, 1] + l[:, 2] * apart[t, 2])
+        return np.asarray(np.maximum(sums, size[t, 0] + l[:, 1] * apart[t, 1] + l[:, 2] * apart[t, 2]))
 
     def own(self, mixer: Mixer) -> Floats:
         """(n,) roundings and the corners' errors: all but the move.
