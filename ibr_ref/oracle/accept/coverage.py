@@ -2,6 +2,10 @@
 
 A corner that the device snaps elsewhere moves an edge function E(c) = (b - a) x (c - a). E is affine in each corner: moving
 a by at most d_a and b by at most d_b along each axis changes it by at most d_a |c - b|_1 + d_b |c - a|_1 + 2 d_a d_b.
+
+The weights of a point p are affine in p, and p = sum w_i c_i. With corners c_i + d_i the weights w' of p fulfil
+p - sum w'_i d_i = sum w'_i c_i: they are the weights that the unmoved triangle has at a point moved by at most
+sum |w'_i| |d_i|. So they differ by at most the gradient of the weights times that.
 """
 
 from __future__ import annotations
@@ -53,6 +57,8 @@ class Fragments:
     certain: Bools
     weights: Floats
     error: Floats
+    moved: Floats
+    """(n,) how far, along each axis, the point that a device's weights belong to may lie from the pixel's centre."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +82,7 @@ class Corners:
 
 
 def snapped(x: Bounded) -> tuple[Floats, Floats]:
-    """Where the reference snaps window coordinates, and how far a legal device's may lie from there, in whole steps.
+    """Where the reference snaps window coordinates, and how far a legal device's may lie from there: 0 or one step.
 
     With the nearest, ties to even, the outcome is certain unless a tie lies within the coordinate's error; where any
     rounding is legal, unless the coordinate lies on the raster exactly. Coarser rasters move by up to their own step.
@@ -87,8 +93,9 @@ def snapped(x: Bounded) -> tuple[Floats, Floats]:
     if device.subpixel_any or device.subpixel_bits != 8:
         on_raster = (steps == reference) & (x.error == 0.0) & (device.subpixel_bits >= 8)
         return reference / RASTER, np.where(on_raster, 0.0, max(2.0**-device.subpixel_bits, 1.0 / RASTER) + x.error)
-    beyond_tie = RASTER * x.error - (0.5 - np.abs(steps - reference))
-    return reference / RASTER, np.where(beyond_tie < 0.0, 0.0, np.floor(beyond_tie) + 1.0) / RASTER
+    # From steps = reference + d a coordinate that is off by e steps goes no farther than floor(|d| + e + 1/2).
+    off = np.floor(np.abs(steps - reference) + RASTER * x.error + 0.5)
+    return reference / RASTER, np.where(x.error > 0.0, off, 0.0) / RASTER
 
 
 def covered(x: Bounded, y: Bounded, width: int, height: int) -> Iterator[Covered]:
@@ -112,14 +119,14 @@ def fragments(x: Bounded, y: Bounded, width: int, height: int) -> Fragments:
     corners = _corners(x, y)
     triangle, rows, columns = _near(corners, width, height)
     px, py = np.asarray(columns + 0.5, np.float64), np.asarray(rows + 0.5, np.float64)
-    edges, slack, varying_slack = _edges(corners, triangle, px, py)
+    edges, slack = _edges(corners, triangle, px, py)
     owned = np.stack([_top_left(corners, *corners.edge(i)) for i in range(3)], axis=1)[triangle]
     area = corners.area[triangle]
     reference = (edges > 0.0) | ((edges == 0.0) & owned)
     inside = reference & ((slack < edges) | (slack == 0.0))
     possible = ((-slack <= edges) & (slack > 0.0) | reference).all(axis=1)
     possible &= (area > 0.0) | (slack > 0.0).any(axis=1)
-    weights, error = _weights(edges, area, varying_slack)
+    weights, error, moved = _weights(corners, triangle, edges)
     turned = corners.turned[triangle]
     inside[turned], weights[turned] = inside[turned][:, [0, 2, 1]], weights[turned][:, [0, 2, 1]]
     certain = inside.all(axis=1) & (area > 0.0)
@@ -132,6 +139,7 @@ def fragments(x: Bounded, y: Bounded, width: int, height: int) -> Fragments:
         certain=certain[possible],
         weights=weights[possible],
         error=error[possible],
+        moved=moved[possible],
     )
 
 
@@ -188,36 +196,39 @@ def _runs(names: Ints, first: Ints, counts: Ints) -> tuple[Ints, Ints]:
     return np.repeat(names, counts), index
 
 
-def _edges(corners: Corners, triangle: Ints, px: Floats, py: Floats) -> tuple[Floats, Floats, Floats]:
-    """(n, 3) the edge functions, and how much moved corners change them: for coverage, and for varyings."""
+def _edges(corners: Corners, triangle: Ints, px: Floats, py: Floats) -> tuple[Floats, Floats]:
+    """(n, 3) the edge functions, and how much moved corners change them."""
     x, y = corners.x[triangle], corners.y[triangle]
     away = np.abs(px[:, None] - x) + np.abs(py[:, None] - y)
     edges = np.empty_like(x)
     for i in range(3):
         a, b = corners.edge(i)
         edges[:, i] = (x[:, b] - x[:, a]) * (py - y[:, a]) - (y[:, b] - y[:, a]) * (px - x[:, a])
-    slack = _slack(corners, corners.off[triangle], away)
-    same = corners.varying_off is corners.off
-    return edges, slack, slack if same else _slack(corners, corners.varying_off[triangle], away)
+    return edges, _slack(corners.off[triangle], away)
 
 
-def _slack(corners: Corners, off: Floats, away: Floats) -> Floats:
+def _slack(off: Floats, away: Floats) -> Floats:
     slack = np.empty_like(away)
     for i in range(3):
-        a, b = corners.edge(i)
+        a, b = (i + 1) % 3, (i + 2) % 3
         slack[:, i] = off[:, a] * away[:, b] + off[:, b] * away[:, a] + 2.0 * off[:, a] * off[:, b]
     return slack
 
 
-def _weights(edges: Floats, area: Floats, slack: Floats) -> tuple[Floats, Floats]:
-    """(n, 3) the edge functions' shares of the area, and (n,) by how much a legal device's may differ."""
-    total = slack[:, 0] + slack[:, 1] + slack[:, 2]
-    room = area - total
+def _weights(corners: Corners, triangle: Ints, edges: Floats) -> tuple[Floats, Floats, Floats]:
+    """(n, 3) the edge functions' shares of the area; (n,) by how much a legal device's may differ, and `Fragments.moved`.
+
+    e <= G sum (|w_i| + e) off_i with the steepest gradient G of the three weights, solved for e.
+    """
+    x, y, off = corners.x, corners.y, corners.varying_off
+    reach = [abs(x[:, b] - x[:, a]) + abs(y[:, b] - y[:, a]) for a, b in map(corners.edge, range(3))]
     with np.errstate(divide="ignore", invalid="ignore"):
-        weights = edges / area[:, None]
-        largest = np.maximum(np.maximum(np.abs(weights[:, 0]), np.abs(weights[:, 1])), np.abs(weights[:, 2]))
-        worst = np.maximum(np.maximum(slack[:, 0], slack[:, 1]), slack[:, 2])
-        return weights, np.where(room > 0.0, (worst + largest * total) / room, np.inf)
+        weights = edges / corners.area[triangle, None]
+        gradient = np.max(reach, axis=0) / corners.area
+        room = (1.0 - gradient * off.sum(axis=1))[triangle]
+        moved = np.where(room > 0.0, (np.abs(weights) * off[triangle]).sum(axis=1) / room, np.inf)
+        moving = np.asarray(off.max(axis=1) > 0.0)[triangle]
+        return weights, np.where(moving, gradient[triangle] * moved, 0.0), np.where(moving, moved, 0.0)
 
 
 def _top_left(corners: Corners, a: int, b: int) -> Bools:

@@ -109,12 +109,14 @@ def test_every_snapping_is_among_the_possible(rounding: str) -> None:
     assert seen > 2_000
 
 
-@pytest.mark.parametrize("error", [1e-5, 1e-3, 0.02, 0.7])
-def test_a_coordinate_that_is_far_off_snaps_far_off(error: float) -> None:
-    x = np.random.default_rng(4).uniform(0, 40, 20_000)
-    at, off = snapped(Bounded(x, np.full(x.shape, error), IEEE32))
-    for moved in (x - error, x + error):
-        assert (abs(np.rint(256.0 * moved) / 256.0 - at) <= off).all()
+@pytest.mark.parametrize("error", [1e-6, 1e-3, 5e-3, 0.1])
+def test_snapping_covers_coordinates_that_are_off_by_many_steps(error: float) -> None:
+    random = np.random.default_rng(2)
+    x = random.uniform(-50, 50, 20_000)
+    reference, off = snapped(Bounded(x, np.full_like(x, error), IEEE32))
+    moved = Arithmetic(Policy()).snap(x + error * random.uniform(-1, 1, x.shape))
+    assert (abs(moved - reference) <= off).all()
+    assert (abs(moved - reference) == off).any()
 
 
 def _weights(corners: np.ndarray, y: np.ndarray, x: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -165,16 +165,7 @@ def see(case: Any, device: Device) -> Seen:
 
 
 def _only(found: Fragments, kept: Bools) -> Fragments:
-    return Fragments(
-        triangle=found.triangle[kept],
-        rows=found.rows[kept],
-        columns=found.columns[kept],
-        turned=found.turned[kept],
-        inside=found.inside[kept],
-        certain=found.certain[kept],
-        weights=found.weights[kept],
-        error=found.error[kept],
-    )
+    return Fragments(**{field.name: getattr(found, field.name)[kept] for field in fields(found)})
 
 
 def _colors(objects: Objects, source: Ints, varying: Sequence[Bounded]) -> list[Bounded]:

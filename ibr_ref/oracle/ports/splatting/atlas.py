@@ -1,0 +1,77 @@
+"""Stage 2: the reference images side by side on pages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.ports.splatting.stage import Stage
+
+Integers = NDArray[np.integer[Any]]
+Texels = NDArray[Any]
+Pages = tuple[Texels, ...]
+
+
+class Atlas(Stage):
+    """Rectangles, and the three maps of each page."""
+
+    def arrays(self, codes: Sequence[NDArray[np.uint8]]) -> dict[str, Any]:
+        """The stage's arrays; codes: the port's own normals (H, W, 3), one array an image."""
+        images = self.scene.images
+        places = self.places([image.arrays[2].shape for image in images])
+        return {
+            "atlas.rects": self.rects(places),
+            "atlas.color": self.pages(places, [self.color_texels(image) for image in images]),
+            "atlas.depth": self.pages(places, [self.depth_texels(image) for image in images]),
+            "atlas.normal": self.pages(places, list(codes)),
+        }
+
+    def places(self, shapes: Sequence[tuple[int, int]]) -> Integers:
+        """(N, 5) page, x, y, width, height: shelves from left to right and from top to bottom, in input order."""
+        page, x, y, shelf = 0, 0, 0, 0
+        places = []
+        for height, width in shapes:
+            if not self.fits(x, width):
+                x, y, shelf = 0, y + shelf, 0
+            if not self.fits(y, height):
+                page, x, y, shelf = page + 1, 0, 0, 0
+            places.append((page, x, y, width, height))
+            x, shelf = x + width, self.shelf_height(shelf, height)
+        return np.array(places, np.int32)
+
+    def fits(self, start: int, extent: int) -> bool:
+        """Whether an image that starts there ends on the page, along one axis."""
+        return bool(start + extent <= self.params.max_atlas_size)
+
+    def shelf_height(self, shelf: int, height: int) -> int:
+        """The height of a shelf with one more image on it."""
+        return max(shelf, height)
+
+    def rects(self, places: Integers) -> Integers:
+        """(N, 5) int32, as they are handed in and read by the vertex stage."""
+        return places
+
+    def color_texels(self, image: Any) -> Texels:
+        """(H, W, 3); 0 off the mask."""
+        color, _, mask = image.arrays
+        return np.where(mask[:, :, None], self.alu.number(color), 0.0)
+
+    def depth_texels(self, image: Any) -> Texels:
+        """(H, W) along the view axis; 0 off the mask."""
+        return self.alu.number(image.arrays[1])
+
+    def pages(self, places: Integers, textures: Sequence[Texels]) -> Pages:
+        """One array a page, cropped to what it holds."""
+        pages = []
+        for page in range(places[:, 0].max() + 1):
+            held = np.flatnonzero(places[:, 0] == page).tolist()
+            width, height = (places[held, 1:3] + places[held, 3:5]).max(axis=0)
+            texels = np.zeros((height, width, *textures[0].shape[2:]), textures[0].dtype)
+            for number in held:
+                _, x, y, w, h = places[number]
+                texels[y : y + h, x : x + w] = textures[number]
+            pages.append(texels)
+        return tuple(pages)

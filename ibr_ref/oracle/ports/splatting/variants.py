@@ -1,0 +1,64 @@
+"""Ports of splatting that are right, each in its own way, with the tightest device profile that explains it.
+
+Splatting filters nothing and interpolates nothing: 8-bit weights and varyings over unsnapped triangles are no variants here.
+"""
+
+from __future__ import annotations
+
+from ibr_ref.oracle.ports.arithmetic import Policy
+from ibr_ref.oracle.ports.faults import Variant
+from ibr_ref.oracle.ports.splatting import orders
+from ibr_ref.oracle.ports.splatting.port import Port, with_stage
+
+
+class LooselyDividing(Port):
+    """Quotients within 2.5 units in the last place, as Vulkan and GLSL grant."""
+
+    arithmetic = orders.LooseQuotients
+
+
+class Truncating(Port):
+    """Every operation within one unit in the last place, as Direct3D grants."""
+
+    arithmetic = orders.Truncating
+
+
+class AllAtOnce(Port):
+    """Other orders in every stage that has one."""
+
+    arithmetic = orders.LooseQuotients
+    vertex = type("AllOrders", (orders.ClipFromWorld, orders.Viewport, orders.HornersLaw, orders.CosinesOnly), {})
+    raster = orders.Quads
+
+
+_FLOAT32 = Policy()
+_ALL = Policy(jitter=2, seed=5, backwards=True, subpixel_rounding="down", depth_bits=24, color_bits=8)
+
+VARIANTS: tuple[Variant, ...] = (
+    Variant("float64", Policy(float_bits=64), "ieee32"),
+    Variant("float32", _FLOAT32, "ieee32"),
+    Variant("backwards-sums", Policy(backwards=True), "ieee32"),
+    Variant("fused", Policy(fused=True), "ieee32"),
+    Variant("fused-backwards", Policy(fused=True, backwards=True), "ieee32"),
+    Variant("clip-from-world", _FLOAT32, "ieee32", with_stage(orders.ClipFromWorld)),
+    Variant("clip-from-reference", _FLOAT32, "ieee32", with_stage(orders.ClipFromReference)),
+    Variant("inverse-intrinsics", _FLOAT32, "ieee32", with_stage(orders.InverseIntrinsics)),
+    Variant("viewport", _FLOAT32, "ieee32", with_stage(orders.Viewport)),
+    Variant("horners-law", _FLOAT32, "ieee32", with_stage(orders.HornersLaw)),
+    Variant("cosines-only", _FLOAT32, "ieee32", with_stage(orders.CosinesOnly)),
+    Variant("whole-codes", _FLOAT32, "ieee32", with_stage(orders.WholeCodes)),
+    Variant("truncating", _FLOAT32, "d3d11", Truncating),
+    Variant("reciprocals", Policy(reciprocal=True), "vulkan"),
+    Variant("loose-quotients-1", Policy(jitter=2, seed=1), "vulkan", LooselyDividing),
+    Variant("loose-quotients-2", Policy(jitter=2, seed=2), "vulkan", LooselyDividing),
+    Variant("subpixels-up", Policy(subpixel_rounding="up"), "vulkan"),
+    Variant("subpixels-truncated", Policy(subpixel_rounding="down"), "vulkan"),
+    Variant("quads", _FLOAT32, "vulkan", with_stage(orders.Quads)),
+    Variant("depth-24", Policy(depth_bits=24), "vulkan"),
+    # Looser in sums and products than any interface grants: in the profile with the most room.
+    Variant("jitter-1", Policy(jitter=1, seed=1), "gl"),
+    Variant("jitter-2", Policy(jitter=2, seed=2), "gl"),
+    Variant("jitter-3", Policy(jitter=2, seed=3), "gl"),
+    Variant("bytes", Policy(color_bits=8), "gl"),
+    Variant("all-at-once", _ALL, "gl", AllAtOnce),
+)

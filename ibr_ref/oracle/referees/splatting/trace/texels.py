@@ -1,0 +1,89 @@
+"""One texel: the choice of neighbours and the normal's code; or what the atlas has there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ibr_ref.oracle.accept.bounded import Bounded
+from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.judgement import Handed, TraceRow
+from ibr_ref.oracle.referees.splatting.atlas import page_of, texels
+from ibr_ref.oracle.referees.splatting.normals import JUMP, Codes, steps, surface
+from ibr_ref.oracle.referees.splatting.table import cut_out
+from ibr_ref.oracle.referees.splatting.trace.rows import DIFFERS, compared, number, text, told
+
+SIDES = {1: {1: "right", -1: "left", 0: "none"}, 0: {1: "below", -1: "above", 0: "none"}}
+
+
+def normal_texel(case: Case, device: Device, handed: Handed, texel: int) -> list[TraceRow]:
+    """The neighbours, the outcomes, and the codes."""
+    sizes = [int(np.prod(np.shape(image.mask))) for image in case.scene.images]
+    ends = np.cumsum(sizes)
+    image = int(np.searchsorted(ends, texel, side="right"))
+    shape = np.shape(case.scene.images[image].mask)
+    row, column = (int(i) for i in np.unravel_index(texel - (ends[image] - sizes[image]), shape))
+    described = surface(case.scene.images[image], device)
+    rows = [told("image, row, column", (image, row, column)), told("on the mask", bool(described.valid[row, column]))]
+    pages, place = handed.get("atlas.normal"), case.frame.stages["atlas.rects"][image]
+    reference = cut_out(case.frame.stages["atlas.normal"], place)
+    port = None if pages is None else cut_out(pages, place)
+    if described.valid[row, column]:
+        rows.append(number("depth", [described.depth[row, column]]))
+        rows += _neighbours(described.depth, described.valid, row, column)
+        for axis, name in ((1, "neighbour on the row"), (0, "neighbour in the column")):
+            found = steps(described, axis)
+            allowed = [SIDES[axis][side] for side, where in found.legal.items() if where[row, column]]
+            rows.append(told(name, SIDES[axis][int(found.reference[row, column])]))
+            rows.append(told(f"{name}: legal", " or ".join(allowed)))
+        for pixels, low, high in Codes(described).outcomes:
+            for i in np.flatnonzero((pixels == (row, column)).all(axis=1)):
+                rows.append(told("codes of one outcome, from and to", f"{text(low[i])} to {text(high[i])}"))
+    mine = "" if reference is None else text(reference[row, column])
+    if port is None:
+        return [*rows, told("code", mine)]
+    legal = bool(Codes(described).allows(port.astype(np.float64))[row, column])
+    return [*rows, TraceRow(step="code", reference=mine, port=text(port[row, column]), note="" if legal else DIFFERS)]
+
+
+def _neighbours(depth: Bounded, valid: np.ndarray, row: int, column: int) -> list[TraceRow]:
+    rows = []
+    for axis, side in ((1, 1), (1, -1), (0, 1), (0, -1)):
+        other = (row + side * (axis == 0), column + side * (axis == 1))
+        name = SIDES[axis][side]
+        inside = 0 <= other[0] < valid.shape[0] and 0 <= other[1] < valid.shape[1]
+        if not inside or not valid[other]:
+            rows.append(told(f"{name}: on the image and its mask", "no"))
+            continue
+        step = abs(depth.value[other] - depth.value[row, column])
+        margin = JUMP * depth.value[row, column] - step
+        bound = float(depth.error[other] + depth.error[row, column])
+        rows.append(compared(f"{name}: {step:.9g} <= 0.05 z", bool(margin >= 0.0), float(margin), bound))
+    return rows
+
+
+def atlas_texel(case: Case, device: Device, handed: Handed, texel: int) -> list[TraceRow]:
+    """Where it lies, whose it is, and its three maps."""
+    stages = case.frame.stages
+    sizes = [int(np.prod(page.shape[:2])) for page in stages["atlas.depth"]]
+    ends = np.cumsum(sizes)
+    page = int(np.searchsorted(ends, texel, side="right"))
+    row, column = (
+        int(i) for i in np.unravel_index(texel - (ends[page] - sizes[page]), stages["atlas.depth"][page].shape)
+    )
+    rows = [told("page, row, column", (page, row, column))]
+    for image, rect in enumerate(stages["atlas.rects"].tolist()):
+        held = rect[0] == page and rect[1] <= column < rect[1] + rect[3] and rect[2] <= row < rect[2] + rect[4]
+        if held:
+            port = np.asarray(handed["atlas.rects"])[image].tolist() if "atlas.rects" in handed else None
+            rows.append(told(f"image {image}: page, x, y, width, height", rect, port))
+    for name, bounds in texels(case, device).items():
+        bound = bounds[page][row, column]
+        parts = [bound[c] for c in range(3)] if name == "atlas.color" else [bound]
+        port = page_of(handed[name], page, bounds[page].value.shape)[row, column] if name in handed else None
+        rows.append(number(name, parts, port))
+    if "atlas.normal" in handed:
+        mine = stages["atlas.normal"][page]
+        theirs = page_of(handed["atlas.normal"], page, mine.shape)[row, column]
+        rows.append(TraceRow(step="atlas.normal", reference=text(mine[row, column]), port=text(theirs)))
+    return rows

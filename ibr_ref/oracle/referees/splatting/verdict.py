@@ -1,0 +1,34 @@
+"""How a judgement is put together from what each array says of each element."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.judgement import Judgement
+
+Bools = NDArray[np.bool_]
+
+
+def judgement(
+    stage: str,
+    element: str,
+    bad: dict[str, Bools],
+    undecided: Bools,
+    width: NDArray[np.float64],
+    replayed: tuple[str, ...] = (),
+) -> Judgement:
+    """bad: for each array that was compared, in order, where no legal outcome that agrees with those before has it."""
+    blame = np.full(undecided.shape, -1, np.int8)
+    for i, wrong in reversed(list(enumerate(bad.values()))):
+        blame[wrong] = i
+    return Judgement(
+        stage=stage,
+        element=element,
+        arrays=tuple(bad),
+        replayed=replayed,
+        wrong=blame >= 0,
+        undecided=undecided,
+        width=width,
+        blame=blame,
+    )

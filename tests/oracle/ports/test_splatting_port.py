@@ -1,0 +1,182 @@
+"""The plain port of splatting is the reference, its variants stay near, and each mutant is wrong where it says."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from ibr_ref import splatting
+from ibr_ref.oracle.ports.arithmetic import Policy
+from ibr_ref.oracle.ports.faults import Mutant, Variant
+from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port, raster
+from tests.oracle.ports.splatting_scenes import SCENES
+from tests.splatting import golden_scenes
+from tests.splatting.strategies import Case, cases
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+
+EXACT = ("terraces", "ties")
+"""Scenes whose borders and depths hang on the last bit by design."""
+
+Arrays = dict[str, Any]
+
+
+def handed_over(stages: Arrays) -> dict[str, Any]:
+    """What a case hands to ports besides the scene: the reference's normals, one array an image."""
+    pages = stages["atlas.normal"]
+    return {"normals": [pages[p][y : y + h, x : x + w] for p, x, y, w, h in stages["atlas.rects"].tolist()]}
+
+
+@cache
+def reference(name: str) -> Arrays:
+    frame = splatting.render(*scene(name))
+    return {**frame.stages, "color": frame.color, "depth": frame.depth}
+
+
+@cache
+def scene(name: str) -> Any:
+    return SCENES[name]()
+
+
+@cache
+def plain(name: str, policy: Policy) -> Arrays:
+    return port(Port, name, policy)
+
+
+def port(kind: Any, name: str, policy: Policy) -> Arrays:
+    arrays: Arrays = kind(*scene(name), policy, handed_over(reference(name))).render()
+    return arrays
+
+
+def arrays_of(value: Any) -> tuple[np.ndarray, ...]:
+    return value if isinstance(value, tuple) else (value,)
+
+
+def distance(a: Any, b: Any) -> tuple[float, int]:
+    """The largest difference of two stages, and of how many elements; infinite where there is nothing to compare with."""
+    pairs = list(zip(arrays_of(a), arrays_of(b), strict=False))
+    if len(arrays_of(a)) != len(arrays_of(b)) or any(x.shape != y.shape for x, y in pairs):
+        return np.inf, 1 << 40
+    flat = [np.concatenate([np.ravel(pair[side]).astype(np.float64) for pair in pairs]) for side in (0, 1)]
+    difference = np.abs(flat[0] - flat[1])
+    difference[np.isnan(flat[0]) & np.isnan(flat[1])] = 0.0
+    difference[np.isnan(difference)] = np.inf
+    return float(difference.max(initial=0.0)), int((difference > 0.0).sum())
+
+
+def agree(found: Arrays, expected: Arrays) -> None:
+    assert found.keys() == expected.keys() - {"raster.margin"}
+    for name, arrays in found.items():
+        largest, count = distance(arrays, expected[name])
+        kinds = {array.dtype for array in arrays_of(expected[name])}
+        assert {array.dtype for array in arrays_of(arrays)} == kinds, name
+        assert largest <= 1e-9, name
+        assert count == 0 or kinds == {np.dtype(np.float64)}, name
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_in_float64_it_is_the_reference(name: str) -> None:
+    agree(plain(name, Policy(float_bits=64)), reference(name))
+
+
+@pytest.mark.parametrize("name", golden_scenes.SCENES)
+def test_without_normals_to_light_with_it_takes_its_own(name: str) -> None:
+    drawn, params = golden_scenes.SCENES[name](60, 40)
+    frame = splatting.render(drawn, params)
+    found = Port(drawn, params, Policy(float_bits=64), {}).render()
+    agree(found, {**frame.stages, "color": frame.color, "depth": frame.depth})
+
+
+@settings(derandomize=True, deadline=None, max_examples=100)
+@given(cases())
+def test_adversarial_scenes(case: Case) -> None:
+    frame = splatting.render(case.scene, case.params)
+    found = Port(case.scene, case.params, Policy(float_bits=64), {}).render()
+    agree(found, {**frame.stages, "color": frame.color, "depth": frame.depth})
+
+
+@pytest.mark.parametrize("name", ["shelves", "terraces"])
+def test_splats_drawn_in_batches(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(raster, "BATCH", 37)
+    agree(port(Port, name, Policy(float_bits=64)), reference(name))
+
+
+# Variants
+
+
+@pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.name)
+def test_variants_stay_near(variant: Variant) -> None:
+    """Far apart from what a mutant does: a hundred times the rounding of float32; few pixels have another winner."""
+    bounds = {"vertex.window": 2e-3, "vertex.depth": 1e-5, "vertex.width": 1e-4, "vertex.color": 1e-4, "color": 1 / 509}
+    for name in SCENES.keys() - EXACT:
+        found, expected = port(variant.port or Port, name, variant.policy), reference(name)
+        same = found["raster.splat"] == expected["raster.splat"]
+        assert (~same).mean() <= 0.005
+        for stage, bound in bounds.items():
+            kept = same if stage == "color" else slice(None)
+            assert distance(found[stage][kept], expected[stage][kept])[0] <= bound, stage
+
+
+@pytest.mark.parametrize("variant", [v for v in VARIANTS if v.name != "float32"], ids=lambda v: v.name)
+def test_variants_are_ports_of_their_own(variant: Variant) -> None:
+    found = {name: port(variant.port or Port, name, variant.policy) for name in SCENES}
+    assert any(distance(a, plain(name, Policy())[stage])[1] for name in SCENES for stage, a in found[name].items())
+
+
+def test_there_are_enough() -> None:
+    assert len({variant.name for variant in VARIANTS}) == len(VARIANTS) >= 12
+    assert len({mutant.name for mutant in MUTANTS}) == len(MUTANTS) >= 44
+    assert 3 * sum(mutant.small for mutant in MUTANTS) >= len(MUTANTS)
+    assert {variant.profile for variant in VARIANTS} <= {"ieee32", "vulkan", "d3d11", "webgpu", "gl"}
+    assert {mutant.stage for mutant in MUTANTS} == {"normals", "atlas", "vertex", "raster", "resolve"}
+
+
+# Mutants
+
+STAGE_OF = {"atlas.normal": "normals", "color": "resolve", "depth": "raster"}
+"""The arrays that do not bear the name of their stage."""
+
+
+def beyond_rounding(name: str, array: str, found: Any) -> bool:
+    """Whether an array differs from the plain port's by more than float32 differs from float64."""
+    largest, count = distance(found, plain(name, Policy())[array])
+    error, changes = distance(plain(name, Policy())[array], plain(name, Policy(float_bits=64))[array])
+    if arrays_of(found)[0].dtype.kind == "f":
+        return largest > 8.0 * error
+    return count > 2 * changes
+
+
+def visible(name: str, found: Arrays) -> float:
+    """The share of pixels whose colour changes by more than a byte's step."""
+    return float((np.abs(found["color"] - plain(name, Policy())["color"]).max(axis=2) > 1.0 / 255.0).mean())
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda m: m.name)
+def test_mutants_are_wrong_in_their_stage(mutant: Mutant) -> None:
+    assert mutant.fault
+    shown = False
+    for name in SCENES:
+        found, right = port(mutant.port, name, Policy()), plain(name, Policy())
+        changed = [array for array in right if distance(found[array], right[array])[1]]
+        if changed:
+            assert STAGE_OF.get(changed[0], changed[0].split(".")[0]) == mutant.stage
+            shown |= beyond_rounding(name, changed[0], found[changed[0]])
+    assert shown
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda m: m.name)
+def test_mutants_are_as_small_and_as_hidden_as_they_say(mutant: Mutant) -> None:
+    found = {name: port(mutant.port, name, Policy()) for name in SCENES}
+    shares = {name: visible(name, arrays) for name, arrays in found.items()}
+    if mutant.hidden:
+        assert max(distance(found[name]["color"], plain(name, Policy())["color"])[0] for name in SCENES) < 1.0 / 2550.0
+    else:
+        assert any(beyond_rounding(name, "color", arrays["color"]) for name, arrays in found.items())
+    if mutant.small:
+        assert max(share for name, share in shares.items() if name not in EXACT) < 0.01
+    elif not mutant.hidden:
+        assert max(shares.values()) >= 0.01

@@ -1,0 +1,121 @@
+"""The referee on ports: no legal one is accused, hardly a bug gets away, and the stage that it is in is named."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from ibr_ref.oracle.ports.arithmetic import Policy
+from ibr_ref.oracle.ports.faults import Mutant, Variant
+from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port
+from tests.oracle.splatting.judged import SMALL, case, complaints, drawn, first_wrong, image, in_bytes, picture, stages
+
+TELLING = ("lamp", "shelves", "discs", "among", "terraces", "dust", "ball", "quads", "sprites")
+"""The small cases, those in which most bugs show first."""
+
+SURVIVORS = 0.05
+"""Of the bugs, the most that may get away when stages are handed in; and the most that may be blamed on another stage."""
+HIDDEN = 0.15
+"""The most that may get away by the final image alone."""
+
+
+@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.name)
+def test_no_legal_variant_is_accused(variant: Variant, name: str) -> None:
+    arrays = drawn(name, variant.policy, variant.port or Port)
+    judged = [
+        *stages(name, arrays, variant.profile),
+        image(name, picture(arrays), variant.profile),
+        image(name, in_bytes(arrays), variant.profile),
+    ]
+    assert complaints(judged) == []
+
+
+@pytest.mark.parametrize("variant", VARIANTS[:3], ids=lambda v: v.name)
+def test_no_legal_variant_is_accused_in_real_size(variant: Variant) -> None:
+    name = "splatting-kettle"
+    arrays = drawn(name, variant.policy, variant.port or Port)
+    assert complaints([*stages(name, arrays, variant.profile), image(name, picture(arrays), variant.profile)]) == []
+
+
+@cache
+def verdict(mutant: Mutant) -> tuple[str | None, bool]:
+    """The first wrong stage in the first case that shows one, and whether some case's image alone shows the bug."""
+    stage, seen = None, False
+    for short in TELLING:
+        name = f"splatting-{short}"
+        arrays = drawn(name, port=mutant.port)
+        stage = stage or first_wrong(stages(name, arrays))
+        seen = seen or bool(image(name, picture(arrays)).wrong.any())
+        if stage is not None and (seen or mutant.hidden):
+            break
+    return stage, seen
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda m: m.name)
+def test_a_bug_that_should_be_killed_is(mutant: Mutant) -> None:
+    stage, seen = verdict(mutant)
+    assert mutant.survives or stage == mutant.stage
+    assert mutant.hidden or seen
+
+
+def test_nearly_all_bugs_are_killed_and_named() -> None:
+    verdicts = {mutant.name: verdict(mutant) for mutant in MUTANTS}
+    count = len(MUTANTS)
+    survivors = [m.name for m in MUTANTS if verdicts[m.name][0] is None]
+    misnamed = [m.name for m in MUTANTS if verdicts[m.name][0] not in (None, m.stage)]
+    unseen = [m.name for m in MUTANTS if not verdicts[m.name][1]]
+    assert len(survivors) <= SURVIVORS * count, survivors
+    assert len(misnamed) <= SURVIVORS * count, misnamed
+    assert len(unseen) <= HIDDEN * count, unseen
+
+
+def random_policy(random: np.random.Generator) -> tuple[Policy, str]:
+    """A device, and the tightest profile that has room for it."""
+    profile = str(random.choice(["ieee32", "vulkan", "gl"]))
+    backwards, fused = (bool(random.integers(2)) for _ in range(2))
+    if profile == "ieee32":
+        return Policy(backwards=backwards, fused=fused), profile
+    policy = Policy(
+        backwards=backwards,
+        fused=fused,
+        reciprocal=bool(random.integers(2)),
+        subpixel_rounding=str(random.choice(["even", "up", "down"])),
+        depth_bits=24 if random.integers(2) else None,
+        color_bits=8 if random.integers(3) == 0 else None,
+        jitter=int(random.integers(3)) if profile == "gl" else 0,
+        seed=int(random.integers(1 << 30)),
+    )
+    return policy, profile
+
+
+def test_a_million_pixels_of_random_devices_are_all_accepted() -> None:
+    random = np.random.default_rng(20)
+    pixels, accepted_widths = 0, []
+    while pixels < 1_000_000:
+        name = SMALL[int(random.integers(len(SMALL)))]
+        policy, profile = random_policy(random)
+        judged = image(name, picture(drawn(name, policy)), profile)
+        assert complaints([judged]) == [], (name, policy)
+        accepted_widths.append(np.nanmedian(judged.width))
+        pixels += judged.wrong.size
+    assert np.median(accepted_widths) < 1e-4, "the accepted sets are too wide to say anything"
+
+
+def test_random_devices_pass_stage_by_stage() -> None:
+    random = np.random.default_rng(21)
+    for name in SMALL:
+        for _ in range(3):
+            policy, profile = random_policy(random)
+            assert complaints(stages(name, drawn(name, policy), profile)) == [], (name, policy)
+
+
+def test_a_looser_device_forgives_more() -> None:
+    """The reference's picture, each number moved by what a Vulkan device may do to it, is no picture of ieee32."""
+    name = "splatting-lamp"
+    arrays = drawn(name, Policy(subpixel_rounding="down"))
+    assert image(name, picture(arrays), "ieee32").wrong.any()
+    assert not image(name, picture(arrays), "vulkan").wrong.any()
+    assert case(name).profile == "ieee32"
