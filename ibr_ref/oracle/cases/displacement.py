@@ -156,7 +156,7 @@ def beside() -> Case:
 
 def street() -> Case:
     """The volume's own interval from inside."""
-    camera = _looking(eye=(-0.5, -0.98, 0.1), target=(-0.52, -0.3, 0.16), vertical_fov=75.0, near=0.05, far=4.0)
+    camera = _looking(eye=(-0.5, -0.9, 0.2), target=(-0.52, -0.3, 0.16), vertical_fov=75.0, near=0.08, far=4.0)
     scene = Scene(polygons=[_quarter()[0]], camera=camera, light=Light(direction=(1.0, -0.5, 1.0)))
     about = "The eye inside the volume above a street: faces behind it and through the near plane, rays that look up."
     params = _params(linear_steps=12, binary_steps=1, interval="volume")
@@ -247,7 +247,14 @@ def loose() -> Case:
     camera = _looking(eye=(0.2, -1.9, 1.2), target=(1.3, -0.3, 0.2), vertical_fov=32.0)
     scene = Scene(polygons=[_gentle(height_scale=0.2)], camera=camera, light=Light(position=(1.8, 1.4, 1.5)))
     about = "Gentle maps for OpenGL as it comes: varyings over unsnapped triangles, weights of eight bits."
-    return _case("loose", "typical", about, scene, _params(linear_steps=16, binary_steps=4, shadow_steps=2, shadow_bias=0.02), "gl")
+    return _case(
+        "loose",
+        "typical",
+        about,
+        scene,
+        _params(linear_steps=16, binary_steps=4, shadow_steps=2, shadow_bias=0.02),
+        "gl",
+    )
 
 
 def metropolis() -> Case:
@@ -263,8 +270,8 @@ def metropolis() -> Case:
 CASES: dict[str, Callable[[], Case]] = {
     f"displacement-{make.__name__}": make
     for make in (
-        box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing, borders,
-        metropolis,
+        box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing,
+        borders, metropolis,
     )
 }  # fmt: skip
 """By name."""

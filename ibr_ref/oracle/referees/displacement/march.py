@@ -243,8 +243,6 @@ def steep_margin(search: Search, outcomes: Outcomes) -> Bounded:
 
 def joined_outcomes(parts: list[Outcomes]) -> Outcomes:
     """One list."""
-    from ibr_ref.oracle.referees.displacement.arrays import joined
-
     return Outcomes(
         **{
             n: np.concatenate([getattr(p, n) for p in parts])
