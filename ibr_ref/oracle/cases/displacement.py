@@ -156,7 +156,7 @@ def beside() -> Case:
 
 def street() -> Case:
     """The volume's own interval from inside."""
-    camera = _looking(eye=(-0.5, -0.98, 0.1), target=(-0.52, -0.3, 0.16), vertical_fov=75.0, near=0.05, far=4.0)
+    camera = _looking(eye=(-0.5, -0.9, 0.2), target=(-0.52, -0.3, 0.16), vertical_fov=75.0, near=0.08, far=4.0)
     scene = Scene(polygons=[_quarter()[0]], camera=camera, light=Light(direction=(1.0, -0.5, 1.0)))
     about = "The eye inside the volume above a street: faces behind it and through the near plane, rays that look up."
     params = _params(linear_steps=12, binary_steps=1, interval="volume")
@@ -165,7 +165,7 @@ def street() -> Case:
 
 def planes() -> Case:
     """Clipping."""
-    camera = _looking(eye=(2.2, -1.5, 0.9), target=(1.2, -0.3, 0.2), near=1.1, far=2.0)
+    camera = _looking(eye=(2.2, -1.5, 0.9), target=(1.2, -0.3, 0.2), near=1.3, far=2.0)
     scene = Scene(polygons=[_sheared()], camera=camera, light=Light(direction=(0.3, -0.5, 1.0)))
     about = "The near and the far plane cut faces, and the near plane what stands on them."
     return _case("planes", "adversarial", about, scene, _params(linear_steps=16, binary_steps=0))
@@ -173,7 +173,7 @@ def planes() -> Case:
 
 def low() -> Case:
     """The paper's interval from an eye inside the volume."""
-    camera = _looking(eye=(-0.05, -0.49, 0.13), target=(0.0, 0.3, 0.02), vertical_fov=80.0)
+    camera = _looking(eye=(0.0, -0.3, 0.1), target=(0.0, 0.3, 0.02), vertical_fov=80.0, near=0.2)
     scene = Scene(polygons=[models.box()], camera=camera, light=Light(direction=(0.5, -0.8, 1.0)))
     about = "The eye below the top of the volume: rays that look up are discarded, hits behind the eye are cut away."
     return _case("low", "adversarial", about, scene, _params(linear_steps=10, binary_steps=1))
@@ -259,19 +259,19 @@ def loose() -> Case:
 
 def metropolis() -> Case:
     """A picture of real size."""
-    camera = _looking(eye=(2.62, -3.18, 2.0), target=(0.0, 0.0, 0.0), vertical_fov=45.0, width=640, height=480)
+    camera = _looking(eye=(2.6, -3.14, 2.02), target=(0.0, 0.0, 0.0), vertical_fov=52.0, width=640, height=480)
     light = Light(direction=(-0.6, -0.5, 0.7), specular=0.3, exponent=37)
     scene = Scene(polygons=[models.city()], camera=camera, light=light, background=(0.5, 0.7, 0.9))
     about = "The whole city at 640 x 480: facades, self-shadow, a highlight."
-    params = _params(linear_steps=32, binary_steps=3, shadow_steps=8)
+    params = _params(linear_steps=40, binary_steps=1, shadow_steps=8)
     return _case("metropolis", "real-sized", about, scene, params)
 
 
 CASES: dict[str, Callable[[], Case]] = {
     f"displacement-{make.__name__}": make
     for make in (
-        box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing, borders,
-        metropolis,
+        box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing,
+        borders, metropolis,
     )
 }  # fmt: skip
 """By name."""

@@ -55,7 +55,7 @@ def shadow_gap(
     """H - (h + bias) at the sample j of S, for some of the hits."""
     device = constants.device
     f = j / (params.shadow_steps + 1)
-    part = Bounded(np.float64(f), np.float64((device.quotient + device.operation) * UNIT * f), device)
+    part = Bounded(np.array(f), np.array((device.quotient + device.operation) * UNIT * f), device)
     u, v, h = [x[some] + q[some] * part for x, q in zip(hit, path, strict=True)]
     level = h + uploaded(params.shadow_bias, device)
     height = constants.textures.height

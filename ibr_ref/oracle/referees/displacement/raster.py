@@ -26,8 +26,8 @@ positions, the product with it, and two sums: 9 and a quotient."""
 MIX_ROUNDINGS = 5.0
 """Of a term E_i a_i / w_i in a sum of three, besides one quotient: E_i a_i, the rounding of E_i, and three of the sum."""
 PLANE_ROUNDINGS = 6.0
-"""Of a term of q_0 + b_1 (q_1 - q_0) + b_2 (q_2 - q_0) with q = a/w, besides the quotients of q and b: the rounding of E, the
-difference, the product and three of the sum."""
+"""Of a term of q_0 + b_1 (q_1 - q_0) + b_2 (q_2 - q_0) with q = a/w, besides the quotients of q and b: the rounding of E,
+the difference, the product and three of the sum."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -146,7 +146,7 @@ def _varying(weights: _Weights, triangles: Triangles, t: Ints) -> Bounded:
     """C = (sum b_i a_i / w_i) / (sum b_i / w_i).
 
     With weights b' and w' of the device, C' - C = sum (b'_i / w'_i)(a_i - C) / sum b'_i / w'_i, and the terms without a
-    prime add up to 0. Where the point moves by d, b' - b = d grad b, so that the sum moves by d sum grad b_i (a_i - C) / w_i.
+    prime add up to 0. Where the point moves by d, b' - b = d grad b: the sum moves by d sum grad b_i (a_i - C) / w_i.
     To that come the roundings of b and the errors of w, each for itself, those of a, and the roundings of the two sums.
     """
     device = triangles.clip.device
@@ -178,10 +178,9 @@ def _varying(weights: _Weights, triangles: Triangles, t: Ints) -> Bounded:
 
 
 def _plane_size(weights: _Weights, q: Floats) -> Floats:
-    """(n,) the sum of the sizes of the terms of a plane through the corners' q (n, 3), from the corner where it is largest."""
-    return np.max(
-        [np.abs(q[:, j]) + (np.abs(weights.value) * np.abs(q - q[:, j, None])).sum(axis=1) for j in range(3)], axis=0
-    )
+    """(n,) the sizes of the terms of a plane through the corners' q (n, 3), from the corner where they are largest."""
+    sizes = [np.abs(q[:, j]) + (np.abs(weights.value) * np.abs(q - q[:, j, None])).sum(axis=1) for j in range(3)]
+    return np.asarray(np.max(sizes, axis=0))
 
 
 def _steepness(gradients: Floats) -> Floats:
