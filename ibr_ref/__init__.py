@@ -34,7 +34,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ibr_ref import displacement, io, models, shadows, splatting
+    from ibr_ref import displacement, io, models, oracle, shadows, splatting
     from ibr_ref.scene import BasePolygon, Camera, DepthImage, Light, Mesh
 
 __version__ = "0.1.0"
@@ -48,11 +48,12 @@ __all__ = [
     "displacement",
     "io",
     "models",
+    "oracle",
     "shadows",
     "splatting",
 ]
 
-_MODULES = ("displacement", "io", "models", "shadows", "splatting")
+_MODULES = ("displacement", "io", "models", "oracle", "shadows", "splatting")
 
 
 def __getattr__(name: str) -> Any:

@@ -9,7 +9,7 @@ object: matrices, the eye and the light in patch space, the choice of the faces;
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -42,15 +42,6 @@ FACES = np.array(
     dtype=np.float32,
 )
 """Corners a, b, c, d of the base and the four side faces in patch space; the index is the face number."""
-
-
-@dataclass
-class Frame:
-    """What a port hands in: `color` (H, W, 3), `depth` (H, W), and the stages by the specification's names."""
-
-    color: np.ndarray
-    depth: np.ndarray
-    stages: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 @dataclass
@@ -90,16 +81,16 @@ class Prepared:
         """Time of one frame, from the first call to the return of glFinish, without read-back."""
         return gl.frame_seconds(self.device, self.draw)
 
-    def read(self) -> Frame:
+    def read(self) -> gl.Frame:
         """The frame that was drawn last."""
         color = self.target.read("color")
         color = color[..., :3] / 255.0 if color.dtype == np.uint8 else color[..., :3].astype(np.float64)
         depth = self.target.read_depth()
         if not self.stages:
-            return Frame(color=color, depth=depth.astype(np.float64))
+            return gl.Frame(color=color, depth=depth.astype(np.float64))
         shown = _stage_arrays(self.target)
         depth = np.where(shown["march.hit_index"] < 0, 1.0, depth.astype(np.float64))
-        return Frame(color=color, depth=depth, stages=self.vertices | shown)
+        return gl.Frame(color=color, depth=depth, stages=self.vertices | shown)
 
     def release(self) -> None:
         """Give everything back to the driver."""
@@ -125,7 +116,7 @@ class Port:
         self.device = device or gl.create_device()
         self._programs: dict[str, moderngl.Program] = {}
 
-    def render(self, scene: Any, params: Any, *, stages: bool = True) -> Frame:
+    def render(self, scene: Any, params: Any, *, stages: bool = True) -> gl.Frame:
         """One frame, read back."""
         prepared = self.prepare(scene, params, stages=stages)
         try:

@@ -50,6 +50,15 @@ class Entry:
 
 
 @dataclass
+class Frame:
+    """What a port hands in: `color` (H, W, 3), `depth` (H, W), and the stages by the specification's names."""
+
+    color: np.ndarray
+    depth: np.ndarray
+    stages: dict[str, np.ndarray] = field(default_factory=dict)
+
+
+@dataclass
 class Device:
     """A context that is current on this thread, and what it turned out to be."""
 

@@ -2,6 +2,10 @@
 
 A corner that the device snaps elsewhere moves an edge function E(c) = (b - a) x (c - a). E is affine in each corner: moving
 a by at most d_a and b by at most d_b along each axis changes it by at most d_a |c - b|_1 + d_b |c - a|_1 + 2 d_a d_b.
+
+The weights of a point p are affine in p, and p = sum w_i c_i. With corners c_i + d_i the weights w' of p fulfil
+p - sum w'_i d_i = sum w'_i c_i: they are the weights that the unmoved triangle has at a point moved by at most
+sum |w'_i| |d_i|. So they differ by at most the gradient of the weights times that.
 """
 
 from __future__ import annotations
@@ -16,6 +20,8 @@ from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.device import Device
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 RASTER = 256.0
 """Subpixels of the reference."""
@@ -26,14 +32,53 @@ class Covered:
     """Pixels that one triangle may cover."""
 
     triangle: int
-    rows: NDArray[np.int64]
-    columns: NDArray[np.int64]
-    certain: NDArray[np.bool_]
+    rows: Ints
+    columns: Ints
+    certain: Bools
     """Every legal device covers the pixel."""
     weights: Floats
     """(n, 3) E_i / (E_0 + E_1 + E_2) of the snapped triangle, as the reference has them (beyond an edge: extrapolated)."""
     error: Floats
     """(n,) by how much a legal device's weights may differ, each; inf for a triangle that may have no area."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fragments:
+    """The same of many triangles, one after the other in their order."""
+
+    triangle: Ints
+    """(n,) growing."""
+    rows: Ints
+    columns: Ints
+    turned: Bools
+    """Its triangle's area is negative: its corners run counterclockwise on the screen."""
+    inside: Bools
+    """(n, 3) the pixel is certainly inside edge i, the one opposite corner i."""
+    certain: Bools
+    weights: Floats
+    error: Floats
+    moved: Floats
+    """(n,) how far, along each axis, the point that a device's weights belong to may lie from the pixel's centre."""
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """Triangles on the raster, (T, 3) each, turned so that their areas are >= 0."""
+
+    x: Floats
+    y: Floats
+    off: Floats
+    """How far a legal device's corner may lie from here, along each axis."""
+    varying_off: Floats
+    """The same of the corners that varyings are interpolated between."""
+    area: Floats
+    """(T,) twice the area."""
+    turned: Bools
+    """(T,) whether corners 1 and 2 are exchanged."""
+
+    def edge(self, i: int) -> tuple[int, int]:
+        """The corners of the edge opposite corner i."""
+        return (i + 1) % 3, (i + 2) % 3
 
 
 def snapped(x: Bounded) -> tuple[Floats, Floats]:
@@ -48,77 +93,148 @@ def snapped(x: Bounded) -> tuple[Floats, Floats]:
     if device.subpixel_any or device.subpixel_bits != 8:
         on_raster = (steps == reference) & (x.error == 0.0) & (device.subpixel_bits >= 8)
         return reference / RASTER, np.where(on_raster, 0.0, max(2.0**-device.subpixel_bits, 1.0 / RASTER) + x.error)
-    to_tie = 0.5 - np.abs(steps - reference)
-    return reference / RASTER, np.where(to_tie > RASTER * x.error, 0.0, 1.0 / RASTER)
+    # From steps = reference + d a coordinate that is off by e steps goes no farther than floor(|d| + e + 1/2).
+    off = np.floor(np.abs(steps - reference) + RASTER * x.error + 0.5)
+    return reference / RASTER, np.where(x.error > 0.0, off, 0.0) / RASTER
 
 
 def covered(x: Bounded, y: Bounded, width: int, height: int) -> Iterator[Covered]:
     """For each triangle with corners x, y (T, 3), in window coordinates, the pixels that it may cover. NaN corners: none."""
+    found = fragments(x, y, width, height)
+    names, starts = np.unique(found.triangle, return_index=True)
+    for triangle, first, last in zip(names, starts, [*starts[1:], len(found.triangle)], strict=True):
+        piece = slice(first, last)
+        yield Covered(
+            int(triangle),
+            found.rows[piece],
+            found.columns[piece],
+            found.certain[piece],
+            found.weights[piece],
+            found.error[piece],
+        )
+
+
+def fragments(x: Bounded, y: Bounded, width: int, height: int) -> Fragments:
+    """The pixels that each triangle with corners x, y (T, 3), in window coordinates, may cover. NaN corners: none."""
+    corners = _corners(x, y)
+    triangle, rows, columns = _near(corners, width, height)
+    px, py = np.asarray(columns + 0.5, np.float64), np.asarray(rows + 0.5, np.float64)
+    edges, slack = _edges(corners, triangle, px, py)
+    owned = np.stack([_top_left(corners, *corners.edge(i)) for i in range(3)], axis=1)[triangle]
+    area = corners.area[triangle]
+    reference = (edges > 0.0) | ((edges == 0.0) & owned)
+    inside = reference & ((slack < edges) | (slack == 0.0))
+    possible = ((-slack <= edges) & (slack > 0.0) | reference).all(axis=1)
+    possible &= (area > 0.0) | (slack > 0.0).any(axis=1)
+    weights, error, moved = _weights(corners, triangle, edges)
+    turned = corners.turned[triangle]
+    inside[turned], weights[turned] = inside[turned][:, [0, 2, 1]], weights[turned][:, [0, 2, 1]]
+    certain = inside.all(axis=1) & (area > 0.0)
+    return Fragments(
+        triangle=triangle[possible],
+        rows=rows[possible],
+        columns=columns[possible],
+        turned=turned[possible],
+        inside=inside[possible],
+        certain=certain[possible],
+        weights=weights[possible],
+        error=error[possible],
+        moved=moved[possible],
+    )
+
+
+def _corners(x: Bounded, y: Bounded) -> Corners:
     (at_x, off_x), (at_y, off_y) = snapped(x), snapped(y)
     off = np.maximum(off_x, off_y)
+    varying_off = off
     if x.device.unsnapped:
-        varying_off = np.maximum(off, np.maximum(np.abs(at_x - x.value) + x.error, np.abs(at_y - y.value) + y.error))
-    else:
-        varying_off = off
-    for triangle in range(len(at_x)):
-        if not (np.isfinite(at_x[triangle]).all() and np.isfinite(at_y[triangle]).all()):
-            continue
-        found = _covered(triangle, at_x[triangle], at_y[triangle], off[triangle], varying_off[triangle], width, height)
-        if found is not None:
-            yield found
+        unsnapped = np.maximum(np.abs(at_x - x.value) + x.error, np.abs(at_y - y.value) + y.error)
+        varying_off = np.maximum(off, unsnapped)
+    area = (at_x[:, 1] - at_x[:, 0]) * (at_y[:, 2] - at_y[:, 0]) - (at_y[:, 1] - at_y[:, 0]) * (at_x[:, 2] - at_x[:, 0])
+    turned = area < 0.0
+    order = np.where(np.asarray(turned)[:, None], [0, 2, 1], [0, 1, 2])
+    x_turned, y_turned, off_turned = (np.take_along_axis(a, order, axis=1) for a in (at_x, at_y, off))
+    varying_turned = off_turned if varying_off is off else np.take_along_axis(varying_off, order, axis=1)
+    return Corners(x_turned, y_turned, off_turned, varying_turned, np.abs(area), np.asarray(turned))
 
 
-def _covered(
-    triangle: int, x: Floats, y: Floats, off: Floats, varying_off: Floats, width: int, height: int
-) -> Covered | None:
-    area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0])
-    if area < 0.0:
-        found = _covered(triangle, x[[0, 2, 1]], y[[0, 2, 1]], off[[0, 2, 1]], varying_off[[0, 2, 1]], width, height)
-        if found is None:
-            return None
-        weights = found.weights[:, [0, 2, 1]]
-        return Covered(triangle, found.rows, found.columns, found.certain, weights, found.error)
-    reach = off.max()
-    box = [
-        (max(int(np.ceil(axis.min() - reach - 0.5)), 0), min(int(np.floor(axis.max() + reach - 0.5)) + 1, count))
-        for axis, count in ((y, height), (x, width))
-    ]
-    if box[0][0] >= box[0][1] or box[1][0] >= box[1][1]:
-        return None
-    rows, columns = (axis.ravel() for axis in np.mgrid[slice(*box[0]), slice(*box[1])])
-    edges, slacks, varying_slacks = [], [], []
+def _near(corners: Corners, width: int, height: int) -> tuple[Ints, Ints, Ints]:
+    """Pixels that are not certainly outside: of each triangle, row by row, the columns that no edge excludes."""
+    usable = np.isfinite(corners.x + corners.y).all(axis=1)
+    reach = np.where(usable, corners.off.max(axis=1), 0.0)
+    x, y = (np.where(np.isfinite(a), a, -1.0) for a in (corners.x, corners.y))
+    (first_row, last_row), (first, last) = (
+        (_clipped(np.ceil(a.min(axis=1) - reach - 0.5), n), _clipped(np.floor(a.max(axis=1) + reach - 0.5) + 1.0, n))
+        for a, n in ((y, height), (x, width))
+    )
+    heights = np.where(usable, np.maximum(last_row - first_row, 0), 0)
+    triangle, row = _runs(np.arange(len(x)), first_row, heights)
+    low, high = first[triangle].astype(np.float64), last[triangle].astype(np.float64)
+    size = np.ptp(x, axis=1) + np.ptp(y, axis=1) + 2.0 * (reach + 1.0)
+    most = (2.0 * reach * size + 2.0 * reach**2)[triangle]  # the slack of any edge anywhere in the box
+    for i in range(3):
+        a, b = corners.edge(i)
+        dx, dy = (x[:, b] - x[:, a])[triangle], (y[:, b] - y[:, a])[triangle]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            # E = dx (py - y_a) - dy (px - x_a) >= -most; a pixel more on either side, for the rounding of the quotient
+            limit = x[:, a][triangle] + (dx * (row + 0.5 - y[:, a][triangle]) + most) / dy
+        low = np.where(dy < 0.0, np.maximum(low, np.floor(limit) - 1.0), low)
+        high = np.where(dy > 0.0, np.minimum(high, np.floor(limit) + 2.0), high)
+    counts = np.maximum(high - low, 0.0).astype(np.int64)
+    of_row, column = _runs(np.arange(len(row)), low.astype(np.int64), counts)
+    return triangle[of_row], row[of_row], column
+
+
+def _clipped(index: Floats, count: int) -> Ints:
+    return np.clip(index, 0.0, float(count)).astype(np.int64)
+
+
+def _runs(names: Ints, first: Ints, counts: Ints) -> tuple[Ints, Ints]:
+    """Each name `counts` times, with the numbers from `first` on."""
+    starts = np.cumsum(counts) - counts
+    index = np.arange(int(counts.sum())) - np.repeat(starts - first, counts)
+    return np.repeat(names, counts), index
+
+
+def _edges(corners: Corners, triangle: Ints, px: Floats, py: Floats) -> tuple[Floats, Floats]:
+    """(n, 3) the edge functions, and how much moved corners change them."""
+    x, y = corners.x[triangle], corners.y[triangle]
+    away = np.abs(px[:, None] - x) + np.abs(py[:, None] - y)
+    edges = np.empty_like(x)
+    for i in range(3):
+        a, b = corners.edge(i)
+        edges[:, i] = (x[:, b] - x[:, a]) * (py - y[:, a]) - (y[:, b] - y[:, a]) * (px - x[:, a])
+    return edges, _slack(corners.off[triangle], away)
+
+
+def _slack(off: Floats, away: Floats) -> Floats:
+    slack = np.empty_like(away)
     for i in range(3):
         a, b = (i + 1) % 3, (i + 2) % 3
-        edge, slack = _edge(x, y, off, a, b, columns + 0.5, rows + 0.5)
-        edges.append(edge)
-        slacks.append(slack)
-        varying_slacks.append(_edge(x, y, varying_off, a, b, columns + 0.5, rows + 0.5)[1])
-    E, slack = np.stack(edges, 1), np.stack(slacks, 1)
-    owned = np.array([_top_left(x, y, (i + 1) % 3, (i + 2) % 3) for i in range(3)])
-    reference = ((E > 0.0) | ((E == 0.0) & owned)).all(axis=1) & (area > 0.0)
-    certain = reference & ((slack < E) | (slack == 0.0)).all(axis=1)
-    possible = reference | ((-slack <= E) & (slack > 0.0) | (E > 0.0) | ((E == 0.0) & owned)).all(axis=1)
-    keep = possible
-    room = area - np.stack(varying_slacks, 1).sum(axis=1)
+        slack[:, i] = off[:, a] * away[:, b] + off[:, b] * away[:, a] + 2.0 * off[:, a] * off[:, b]
+    return slack
+
+
+def _weights(corners: Corners, triangle: Ints, edges: Floats) -> tuple[Floats, Floats, Floats]:
+    """(n, 3) the edge functions' shares of the area; (n,) by how much a legal device's may differ, and `Fragments.moved`.
+
+    e <= G sum (|w_i| + e) off_i with the steepest gradient G of the three weights, solved for e.
+    """
+    x, y, off = corners.x, corners.y, corners.varying_off
+    reach = [abs(x[:, b] - x[:, a]) + abs(y[:, b] - y[:, a]) for a, b in map(corners.edge, range(3))]
     with np.errstate(divide="ignore", invalid="ignore"):
-        weights = E / area
-        total = np.stack(varying_slacks, 1)
-        error = np.where(
-            room > 0.0, (total.max(axis=1) + np.abs(weights).max(axis=1) * total.sum(axis=1)) / room, np.inf
-        )
-    return Covered(triangle, rows[keep], columns[keep], certain[keep], weights[keep], error[keep])
+        weights = edges / corners.area[triangle, None]
+        gradient = np.max(reach, axis=0) / corners.area
+        room = (1.0 - gradient * off.sum(axis=1))[triangle]
+        moved = np.where(room > 0.0, (np.abs(weights) * off[triangle]).sum(axis=1) / room, np.inf)
+        moving = np.asarray(off.max(axis=1) > 0.0)[triangle]
+        return weights, np.where(moving, gradient[triangle] * moved, 0.0), np.where(moving, moved, 0.0)
 
 
-def _edge(x: Floats, y: Floats, off: Floats, a: int, b: int, px: Floats, py: Floats) -> tuple[Floats, Floats]:
-    """E of the edge a -> b at the points, and how much moved corners change it."""
-    edge = (x[b] - x[a]) * (py - y[a]) - (y[b] - y[a]) * (px - x[a])
-    to_a, to_b = np.abs(px - x[a]) + np.abs(py - y[a]), np.abs(px - x[b]) + np.abs(py - y[b])
-    return edge, off[a] * to_b + off[b] * to_a + 2.0 * off[a] * off[b]
-
-
-def _top_left(x: Floats, y: Floats, a: int, b: int) -> bool:
-    """Whether pixels on the edge a -> b of a triangle with E > 0 inside (y downwards) belong to it."""
-    return bool((y[b] == y[a] and x[b] > x[a]) or y[b] < y[a])
+def _top_left(corners: Corners, a: int, b: int) -> Bools:
+    """(T,) whether pixels on the edge a -> b of a triangle with E > 0 inside (y downwards) belong to it."""
+    dx, dy = corners.x[:, b] - corners.x[:, a], corners.y[:, b] - corners.y[:, a]
+    return np.asarray(((dy == 0.0) & (dx > 0.0)) | (dy < 0.0))
 
 
 def window_raster(device: Device) -> float:

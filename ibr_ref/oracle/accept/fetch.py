@@ -8,10 +8,12 @@ positions reaches into other cells, its extremes lie on the corners of the box a
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter, minimum_filter
 
 from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.device import UNIT
@@ -20,7 +22,7 @@ Floats = NDArray[np.float64]
 
 FILTER_ROUNDINGS = 8.0
 """Of a filter in float arithmetic: two nested lerps, each 1 - f, two products and a sum on numbers no larger than the
-largest texel, and one rounding of the texel itself."""
+largest texel in reach, and one rounding of the texel itself."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,19 +32,49 @@ class Texture:
     texels: Floats
     repeat: bool = False
 
+    @cached_property
+    def largest(self) -> float:
+        """The largest magnitude of a texel."""
+        return float(np.max(np.abs(self.texels)))
+
+    @cached_property
+    def _extremes(self) -> dict[int, tuple[Floats, Floats]]:
+        return {}
+
+    def extremes(self, reach: int) -> tuple[Floats, Floats]:
+        """The least and the largest texel no farther than `reach` from each texel along both axes, kept for later."""
+        if reach not in self._extremes:
+            size = (2 * reach + 1, 2 * reach + 1, 1)[: self.texels.ndim]
+            mode = "wrap" if self.repeat else "nearest"
+            least, most = (f(self.texels, size, mode=mode) for f in (minimum_filter, maximum_filter))
+            self._extremes[reach] = (least, most)
+        return self._extremes[reach]
+
     def at(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Floats:
         """Texels by index, after the wrap mode."""
         height, width = self.texels.shape[:2]
-        if self.repeat:
-            rows, columns = rows % height, columns % width
-        return np.asarray(self.texels[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)])
+        return self._gather(self._wrapped(rows, height) * width + self._wrapped(columns, width))
 
     def cell(self, x: Floats, y: Floats) -> tuple[list[Floats], Floats, Floats]:
         """The four texels (00, 10, 01, 11; x first) around x = u W - 0.5, y = v H - 0.5, and the fractions."""
+        height, width = self.texels.shape[:2]
         x0, y0 = np.floor(x), np.floor(y)
-        columns, rows = x0.astype(np.int64), y0.astype(np.int64)
-        corners = [self.at(rows + i, columns + j) for i in (0, 1) for j in (0, 1)]
-        return corners, self._spread(x - x0), self._spread(y - y0)
+        column, row = x0.astype(np.int64), y0.astype(np.int64)
+        columns = [self._wrapped(column + j, width) for j in (0, 1)]
+        rows = [self._wrapped(row + i, height) * width for i in (0, 1)]
+        return [self._gather(r + c) for r in rows for c in columns], self._spread(x - x0), self._spread(y - y0)
+
+    @cached_property
+    def _flat(self) -> Floats:
+        return np.ascontiguousarray(self.texels.reshape(-1, *self.texels.shape[2:]))
+
+    def _gather(self, index: NDArray[np.int64]) -> Floats:
+        return np.asarray(self._flat.take(index, axis=0))
+
+    def _wrapped(self, index: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+        if self.repeat:
+            return np.asarray(index % count)
+        return np.minimum(np.maximum(index, 0), count - 1)
 
     def bilinear(self, x: Floats, y: Floats) -> Floats:
         """The reference's fetch at x = u W - 0.5, y = v H - 0.5."""
@@ -67,9 +99,10 @@ def fetch(texture: Texture, u: Bounded, v: Bounded) -> Bounded:
     slope_y = np.maximum(np.abs(t01 - t00), np.abs(t11 - t10))
     error = slope_x * texture._spread(off_x) + slope_y * texture._spread(off_y)
     crossing = (np.floor(at_x - off_x) != np.floor(at_x + off_x)) | (np.floor(at_y - off_y) != np.floor(at_y + off_y))
+    largest = reduce(np.maximum, [np.abs(t) for t in (t00, t10, t01, t11)])
     if crossing.any():
+        largest[crossing] = texture.largest
         error[crossing] = _spread_around(texture, *(a[crossing] for a in (at_x, at_y, off_x, off_y, value)))
-    largest = np.max(np.abs(texture.texels))
     rounding = FILTER_ROUNDINGS * device.operation * UNIT * largest
     return Bounded(value, error + rounding, device)
 
@@ -84,8 +117,17 @@ def _spread_around(texture: Texture, x: Floats, y: Floats, off_x: Floats, off_y:
     for at_x in _stations(x, off_x):
         for at_y in _stations(y, off_y):
             error = np.maximum(error, np.abs(texture.bilinear(at_x, at_y) - value))
-    wide = (off_x >= 0.5) | (off_y >= 0.5)  # more than one border may cut the box
-    return np.where(texture._spread(wide), np.ptp(texture.texels), error)
+    wide = np.maximum(off_x, off_y)
+    for reach in (1, 2, 4, 8, 16):
+        # More than one border may cut the box; its texels are these, no farther from the nearest one than off and a texel.
+        here = np.flatnonzero((wide >= 0.5) & (wide <= reach))
+        if len(here):
+            wide[here] = 0.0
+            columns, rows = (np.floor(np.clip(c[here], -1e9, 1e9)).astype(np.int64) for c in (x, y))
+            least, most = (Texture(e, texture.repeat).at(rows, columns) for e in texture.extremes(reach + 1))
+            error[here] = np.maximum(most - value[here], value[here] - least)
+    error[wide >= 0.5] = np.ptp(texture.texels)
+    return error
 
 
 def _stations(x: Floats, off: Floats) -> tuple[Floats, Floats, Floats]:

@@ -34,8 +34,12 @@ class Case:
     @cached_property
     def frame(self) -> Frame:
         """What the reference draws, with all stages."""
+        return self.draw(stages=True)
+
+    def draw(self, *, stages: bool) -> Frame:
+        """What the reference draws; without stages the same picture and depth sooner."""
         if self.method == "displacement":
-            return displacement.render(self.scene, self.params)
+            return displacement.render(self.scene, self.params, stages=stages)
         if self.method == "splatting":
-            return splatting.render(self.scene, self.params)
-        return shadows.render(self.scene, self.params, maps=self.inputs.get("maps"))
+            return splatting.render(self.scene, self.params, stages=stages)
+        return shadows.render(self.scene, self.params, maps=self.inputs.get("maps"), stages=stages)

@@ -67,7 +67,8 @@ class Arithmetic:
         if self.policy.jitter and self.policy.float_bits == 32:
             unit = np.spacing(np.abs(array).astype(np.float32)).astype(np.float64)
             steps = self._random.integers(-self.policy.jitter, self.policy.jitter + 1, array.shape)
-            array = self.number(np.where(np.isfinite(array), array + steps * unit, array))
+            moves = np.isfinite(array) & (array != 0.0)  # a step from 0 is a denormal number, which devices flush to 0
+            array = self.number(np.where(moves, array + steps * unit, array))
         return array
 
     def add(self, a: ArrayLike, b: ArrayLike) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.accept.bounded import Bounded, dot, lerp, power, unit, uploaded
-from ibr_ref.oracle.accept.coverage import covered
+from ibr_ref.oracle.accept.coverage import covered, snapped
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.accept.winners import winners
 from ibr_ref.oracle.device import GL, IEEE32, PROFILES, VULKAN, Device
@@ -107,6 +107,16 @@ def test_every_snapping_is_among_the_possible(rounding: str) -> None:
         assert (abs(weights - found.weights).max(axis=1)[finite] <= found.error[finite] + 1e-12).all()
         seen += len(found.rows)
     assert seen > 2_000
+
+
+@pytest.mark.parametrize("error", [1e-6, 1e-3, 5e-3, 0.1])
+def test_snapping_covers_coordinates_that_are_off_by_many_steps(error: float) -> None:
+    random = np.random.default_rng(2)
+    x = random.uniform(-50, 50, 20_000)
+    reference, off = snapped(Bounded(x, np.full_like(x, error), IEEE32))
+    moved = Arithmetic(Policy()).snap(x + error * random.uniform(-1, 1, x.shape))
+    assert (abs(moved - reference) <= off).all()
+    assert (abs(moved - reference) == off).any()
 
 
 def _weights(corners: np.ndarray, y: np.ndarray, x: np.ndarray) -> np.ndarray:

@@ -1,0 +1,87 @@
+"""`ibr-ref check`: the verdict on a port, and the oracle's trial on itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ibr_ref.cli.progress import progress
+
+if TYPE_CHECKING:
+    from ibr_ref.oracle.examination import Examination
+
+EXAMPLES = """
+Examples:
+
+    ibr-ref export displacement-box cases/box
+
+    ibr-ref check cases/box my_port/box --report verdict.html
+
+    ibr-ref check cases/box my_port/box --device vulkan --json verdict.json
+
+    ibr-ref check --self-test
+
+Exit code 0: PASS, 1: FAIL, 2: INCONCLUSIVE, or the case or an option is unusable.
+"""
+
+
+def command(
+    case: Annotated[Path | None, typer.Argument(help="Folder that `ibr-ref export` wrote.", show_default=False)] = None,
+    port: Annotated[
+        Path | None,
+        typer.Argument(help="Folder with what the port drew: color.png or color.npy, any stages.", show_default=False),
+    ] = None,
+    device: Annotated[
+        str | None,
+        typer.Option(
+            help="ieee32, d3d11, vulkan, webgpu or gl. Without: port.json's, or the tightest that explains all."
+        ),
+    ] = None,
+    json: Annotated[Path | None, typer.Option(help="Also write the verdict as JSON.")] = None,
+    report: Annotated[Path | None, typer.Option(help="Also write it as one HTML page, with pictures.")] = None,
+    self_test: Annotated[
+        bool, typer.Option("--self-test", help="Try the oracle on right ports and on broken ones, and print the table.")
+    ] = False,
+    method: Annotated[str | None, typer.Option(help="--self-test: displacement, splatting or shadows alone.")] = None,
+) -> None:
+    """Say whether a port's pictures are right, and if not, where they first go wrong."""
+    if self_test:
+        if case is not None:
+            raise typer.BadParameter("--self-test takes no folders")
+        from ibr_ref.cli.self_test import run
+
+        raise typer.Exit(run(method))
+    if case is None or port is None:
+        raise typer.BadParameter("found too few folders, allowed: CASE and PORT, or --self-test")
+    if method is not None:
+        raise typer.BadParameter("--method goes with --self-test")
+    examination = _examined(case, port, device, json, report)
+    if json is not None:
+        from ibr_ref.io.files import atomic
+
+        with atomic(json) as file:
+            file.write((examination.verdict.model_dump_json(indent=2) + "\n").encode("utf-8"))
+    typer.echo(examination.verdict.words())
+    raise typer.Exit(examination.verdict.outcome.exit_code)
+
+
+def _examined(case: Path, port: Path, device: str | None, json: Path | None, report: Path | None) -> Examination:
+    """Read, judge, and write the page."""
+    with progress(4) as step:
+        step("reading the case")
+        from ibr_ref import io, oracle
+
+        for path in (json, report):
+            if path is not None:
+                io.check_writable(path)
+        loaded = oracle.load_case(case)
+        step("reading what the port drew")
+        submission = oracle.load_submission(port, loaded)
+        step("judging")
+        examination = oracle.check(loaded, submission, profile=device)
+        if report is not None:
+            step("writing the report")
+            oracle.write_report(examination, report)
+    return examination

@@ -1,0 +1,79 @@
+"""`ibr-ref export`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ibr_ref.cli.progress import progress
+
+EXAMPLES = """
+Examples:
+
+    ibr-ref export --list
+
+    ibr-ref export displacement-box box
+
+    ibr-ref export all cases
+
+    ibr-ref export --schema > case.schema.json
+"""
+
+
+def command(
+    case: Annotated[
+        str | None, typer.Argument(metavar="CASE", help="A case's name, or `all`.", show_default=False)
+    ] = None,
+    folder: Annotated[
+        Path | None,
+        typer.Argument(metavar="DIR", help="Made; of `all` a folder in it for each case.", show_default=False),
+    ] = None,
+    list_: Annotated[bool, typer.Option("--list", help="Print all cases: name, kind, and what each tries.")] = False,
+    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of case.json.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace the export of another case, and whatever lies in its folder.")
+    ] = False,
+) -> None:
+    """Write a case for ports: the scene, its inputs, and what is expected, readable in any language.
+
+    A folder that holds an export of the same case is replaced; nothing is ever half-written.
+    """
+    if list_ or schema:
+        if case is not None:
+            raise typer.BadParameter(
+                f"found the case {case!r} with --list or --schema, allowed: neither or nothing else"
+            )
+        return _print_schema() if schema else _print_list()
+    if case is None or folder is None:
+        raise typer.BadParameter("found no CASE and DIR, allowed: both, or --list, or --schema")
+    _export(case, folder, force)
+    return None
+
+
+def _print_schema() -> None:
+    from ibr_ref.oracle.schema import schema_text
+
+    typer.echo(schema_text(), nl=False)
+
+
+def _print_list() -> None:
+    from ibr_ref.oracle import cases
+
+    names = cases.names()
+    width = max(map(len, names), default=0)
+    for name in names:
+        case = cases.build(name)
+        typer.echo(f"{name:{width}}  {case.kind:11}  {case.about}")
+
+
+def _export(name: str, folder: Path, force: bool) -> None:
+    from ibr_ref.oracle import cases, files
+
+    names = cases.names() if name == "all" else [name]
+    with progress(len(names)) as step:
+        for each in names:
+            step(each)
+            case = cases.build(each)
+            files.export(case, folder / each if name == "all" else folder, force=force)

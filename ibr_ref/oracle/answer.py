@@ -1,0 +1,43 @@
+"""The verdict on what a port handed in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.cases import Case, build, names
+from ibr_ref.oracle.examination import Examination, examine
+from ibr_ref.oracle.files import Submission, stale
+from ibr_ref.oracle.verdict import Outcome
+
+
+def check(case: Case, submission: Submission, *, profile: str | None = None) -> Examination:
+    """Judge a submission by the profile that is given, or declared by the port, or the tightest that explains it.
+
+    A wrong image that is the image of another built-in case makes the verdict INCONCLUSIVE: the port did not draw this
+    one. Raises ValueError for an unknown profile.
+    """
+    problems = [str(problem) for problem in submission.problems]
+    examination = examine(case, submission.handed, profile=profile or submission.profile, problems=problems)
+    image = examination.judgement("image")
+    if image is None or not image.wrong.any():
+        return examination
+    other = stale(case, submission.handed, _others(case))
+    if other is None:
+        return examination
+    verdict = examination.verdict.model_copy(update={"outcome": Outcome.INCONCLUSIVE, "reasons": (str(other),)})
+    return replace(examination, verdict=verdict)
+
+
+def _others(case: Case) -> Iterator[tuple[str, NDArray[np.float64]]]:
+    """Pictures of the other built-in cases of that size."""
+    size = case.scene.camera.width, case.scene.camera.height
+    for name in names():
+        if name == case.name:
+            continue
+        other = build(name)
+        if (other.scene.camera.width, other.scene.camera.height) == size:
+            yield name, other.frame.color

@@ -1,0 +1,192 @@
+"""From what a port handed in to a verdict: profiles, stages, conventions and biases, in this order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ibr_ref.oracle.bias import biases
+from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.conventions import conventions
+from ibr_ref.oracle.device import PROFILES, Device
+from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.referees import referee
+from ibr_ref.oracle.verdict import Bias, Box, Outcome, StageVerdict, TraceStep, Verdict, Witness
+from ibr_ref.scene import checks
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Examination:
+    """A verdict with the arrays that it rests on."""
+
+    case: Case
+    handed: Handed
+    judgements: Sequence[Judgement]
+    """By the verdict's profile: the stages in order, then "image" where a colour was handed in."""
+    verdict: Verdict
+
+    def judgement(self, stage: str) -> Judgement | None:
+        """Of a stage, or None."""
+        return next((j for j in self.judgements if j.stage == stage), None)
+
+
+def judge(case: Case, handed: Handed, device: Device) -> list[Judgement]:
+    """All that one device allows: the stages in order, each on the port's own inputs, then "image" if a colour is there.
+
+    A stage of which only the picture was handed in, and nothing that it was made of, is not judged as a stage: that is
+    the picture's judgement.
+    """
+    method = referee(case.method)
+    judgements = [
+        j for j in method.judge_stages(case, device, handed) if j.replayed or {*j.arrays} - {"color", "depth"}
+    ]
+    return [*judgements, method.judge_image(case, device, handed)] if "color" in handed else judgements
+
+
+@dataclass(frozen=True, eq=False)
+class _Trial:
+    """All judgements by one device."""
+
+    device: Device
+    judgements: list[Judgement]
+
+    @property
+    def wrong(self) -> int:
+        return sum(int(j.wrong.sum()) for j in self.judgements)
+
+
+def examine(case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = ()) -> Examination:
+    """Judge a port's arrays.
+
+    profile: the device that the port declares; without one, the tightest that explains every element is sought, and a
+    port that not even the loosest explains fails by that. problems: what made files of the submission unusable; with any,
+    the verdict is INCONCLUSIVE, because what could not be read may be wrong. Raises ValueError for an unknown profile.
+    """
+    if profile is not None:
+        checks.choice("device", profile, list(PROFILES))
+    if problems or not handed:
+        reasons = tuple(problems) or ("nothing was handed in: allowed: color, depth or any stage",)
+        return Examination(case=case, handed=handed, judgements=(), verdict=_unusable(case, reasons))
+    trials = _trials(case, handed, [PROFILES[profile]] if profile else [*PROFILES.values()])
+    trial = trials[-1]
+    judgements = trial.judgements
+    fields: dict[str, Any] = {
+        "case": case.name,
+        "method": case.method,
+        "profile": trial.device.name,
+        "declared": profile is not None,
+        "tried": {t.device.name: t.wrong for t in trials},
+        "stages": tuple(_summary(j) for j in judgements),
+    }
+    image = next((j for j in judgements if j.stage == "image"), None)
+    if image is not None:
+        fields["undecided_share"] = float(image.undecided.mean())
+        fields["median_width"] = _median(image)
+    wrong = _first_wrong(judgements)
+    found: tuple[Bias, ...] = ()
+    if image is not None:
+        found = biases(case, handed, image, trial.device, wrong=wrong is not None)
+        fields["biases"] = found
+    if wrong is None and not found:
+        return Examination(
+            case=case, handed=handed, judgements=judgements, verdict=Verdict(outcome=Outcome.PASS, **fields)
+        )
+    if wrong is not None:
+        fields["first_wrong_stage"] = wrong.stage
+        fields["witness"] = _witness(case, trial.device, handed, wrong)
+        if image is not None and image.wrong.any():
+            fields["conventions"] = conventions(case, trial.device, handed, int(image.wrong.sum()))
+    else:
+        fields["first_wrong_stage"] = "image"
+    return Examination(case=case, handed=handed, judgements=judgements, verdict=Verdict(outcome=Outcome.FAIL, **fields))
+
+
+def _unusable(case: Case, reasons: tuple[str, ...]) -> Verdict:
+    return Verdict(outcome=Outcome.INCONCLUSIVE, case=case.name, method=case.method, reasons=reasons)
+
+
+def _trials(case: Case, handed: Handed, devices: Sequence[Device]) -> list[_Trial]:
+    """The last one is what the verdict rests on: the first that leaves nothing unexplained, or the loosest of all."""
+    loosest = _Trial(devices[-1], judge(case, handed, devices[-1]))
+    if loosest.wrong:
+        return [loosest]
+    trials = []
+    for device in devices[:-1]:
+        trials.append(_Trial(device, judge(case, handed, device)))
+        if not trials[-1].wrong:
+            return trials
+    return [*trials, loosest]
+
+
+def _first_wrong(judgements: Sequence[Judgement]) -> Judgement | None:
+    return next((j for j in judgements if j.wrong.any()), None)
+
+
+def _median(judgement: Judgement) -> float | None:
+    widths = judgement.width[np.isfinite(judgement.width)]
+    return float(np.median(widths)) if widths.size else None
+
+
+def _summary(judgement: Judgement) -> StageVerdict:
+    wrong = np.argwhere(judgement.wrong)
+    box = None
+    if len(wrong):
+        box = Box(first=tuple(wrong.min(axis=0).tolist()), last=tuple(wrong.max(axis=0).tolist()))
+    counts = np.bincount(judgement.blame[judgement.wrong].clip(0), minlength=len(judgement.arrays))
+    return StageVerdict(
+        stage=judgement.stage,
+        element=judgement.element,
+        arrays=judgement.arrays,
+        replayed=judgement.replayed,
+        elements=judgement.wrong.size,
+        wrong=len(wrong),
+        undecided=int(judgement.undecided.sum()),
+        box=box,
+        blamed={name: int(count) for name, count in zip(judgement.arrays, counts, strict=False) if count},
+        median_width=_median(judgement),
+    )
+
+
+def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -> Witness:
+    """The first wrong element that no undecided one touches, else the first."""
+    doubtful = judgement.undecided.copy()
+    for axis in range(doubtful.ndim):
+        doubtful |= np.roll(judgement.undecided, 1, axis) | np.roll(judgement.undecided, -1, axis)
+    clear = np.argwhere(judgement.wrong & ~doubtful)
+    index = tuple(int(i) for i in (clear if len(clear) else np.argwhere(judgement.wrong))[0])
+    array = judgement.arrays[max(int(judgement.blame[index]), 0)]
+    rows = referee(case.method).trace(case, device, handed, judgement.stage, index)
+    return Witness(
+        stage=judgement.stage,
+        element=judgement.element,
+        index=index,
+        array=array,
+        reference=_shown(_expected(case, array), index),
+        port=_shown(handed.get(array), index),
+        trace=tuple(
+            TraceStep(step=r.step, reference=r.reference, port=r.port, margin=r.margin, bound=r.bound, note=r.note)
+            for r in rows
+        ),
+    )
+
+
+def _expected(case: Case, array: str) -> Any:
+    if array in ("color", "depth"):
+        return getattr(case.frame, array)
+    return case.frame.stages.get(array)
+
+
+def _shown(array: Any, index: tuple[int, ...]) -> str:
+    """An element's numbers; of an atlas's pages the first index is the page."""
+    if array is None:
+        return "nothing"
+    try:
+        value = np.asarray(array[index[0]][index[1:]] if isinstance(array, tuple) else array[index])
+    except IndexError:
+        return "nothing"
+    if value.size > 16:
+        return f"{value.size} numbers"
+    return np.array2string(value, precision=9, separator=", ", floatmode="maxprec").replace("\n", "")

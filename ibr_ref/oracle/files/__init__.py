@@ -1,0 +1,18 @@
+"""Cases as folders, and what ports hand in: everything of the oracle that touches a file."""
+
+from ibr_ref.oracle.files.content import stale
+from ibr_ref.oracle.files.load import changed_stages, load_case
+from ibr_ref.oracle.files.problem import Problem
+from ibr_ref.oracle.files.submission import Submission, load_submission, submission_from_arrays
+from ibr_ref.oracle.files.write import export
+
+__all__ = [
+    "Problem",
+    "Submission",
+    "changed_stages",
+    "export",
+    "load_case",
+    "load_submission",
+    "stale",
+    "submission_from_arrays",
+]

@@ -1,0 +1,120 @@
+"""Read a case's folder back, with nothing believed."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ValidationError
+
+from ibr_ref.io.files import naming
+from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.files.folder import existing_folder, file_inside, small_file
+from ibr_ref.oracle.files.manifest import Manifest, digest_of_bytes
+from ibr_ref.oracle.files.npy import Accept, Header, digest, read_array
+from ibr_ref.oracle.files.pictures import read_bytes
+from ibr_ref.oracle.files.problem import UnusableError, field_problem
+from ibr_ref.oracle.files.write import LARGEST_DOCUMENT
+from ibr_ref.oracle.schema import ADAPTER, Document, build, describe_inputs, input_files
+from ibr_ref.oracle.schema.base import Stored, StoredFile
+from ibr_ref.oracle.schema.stages import expected
+
+
+def load_case(folder: str | PathLike[str]) -> Case:
+    """The case of a folder; the reference draws it with the same bits as before it was exported.
+
+    Every file is read and its hash compared; the scene is built, described anew and compared with the document, so that
+    no matrix contradicts another. Raises OSError or ValueError, one line that names the file, for anything else.
+    """
+    path = existing_folder(folder)
+    document, manifest = _documents(path)
+    stored = _arrays(path, document, manifest)
+    where = path / "case.json"
+    with naming(where):
+        case = build(document, stored)
+        again, _ = describe_inputs(case)
+    _check_same(f"{where}: ", _scene_of(document), _scene_of(again))
+    return case
+
+
+def changed_stages(case: Case, folder: str | PathLike[str]) -> list[str]:
+    """Expected arrays in the folder that this version of the reference draws differently, by name; renders the case.
+
+    Empty unless the folder was exported by another version, or arrays were exchanged together with their hashes.
+    """
+    document, manifest = _documents(existing_folder(folder))
+    now = {name: digest(array) for name, array in expected(case.frame).items()}
+    then = {stage.name: manifest.arrays[stage.file] for stage in document.expected}
+    return [name for name in {**then, **now} if now.get(name) != then.get(name)]
+
+
+def _documents(path: Path) -> tuple[Document, Manifest]:
+    data = small_file(path, "case.json", LARGEST_DOCUMENT)
+    try:
+        document = ADAPTER.validate_json(data)
+    except ValidationError as error:
+        raise field_problem(path / "case.json", error) from None
+    try:
+        manifest = Manifest.model_validate_json(small_file(path, "manifest.json", LARGEST_DOCUMENT))
+    except ValidationError as error:
+        raise field_problem(path / "manifest.json", error) from None
+    for name in ("case.json", "README.md"):
+        text = data if name == "case.json" else small_file(path, name, LARGEST_DOCUMENT)
+        _check_hash(path / name, digest_of_bytes(text), manifest.documents.get(name))
+    files: list[StoredFile] = [*input_files(document), *document.expected]
+    named = {name for file in files for name in (file.file, file.png) if name}
+    different = sorted(named ^ set(manifest.arrays))
+    if different:
+        raise UnusableError(path / "manifest.json", f"{different[0]} in one of both", "the arrays that case.json names")
+    return document, manifest
+
+
+def _arrays(path: Path, document: Document, manifest: Manifest) -> Stored:
+    """The inputs, by file; what is expected is read and compared, and not kept."""
+    stored: Stored = {}
+    files: list[StoredFile] = [*input_files(document), *document.expected]
+    for file in files:
+        where = file_inside(path, file.file)
+        array = read_array(where, _like(where, file.dtype, file.shape))
+        _check_hash(where, digest(array), manifest.arrays[file.file])
+        if file.file.startswith("inputs/"):
+            stored[file.file] = array
+        if file.png is not None:
+            picture = file_inside(path, file.png)
+            _check_hash(picture, digest(read_bytes(picture, [file.shape])), manifest.arrays[file.png])
+    return stored
+
+
+def _like(where: Path, dtype: str, shape: tuple[int, ...]) -> Accept:
+    def accept(header: Header) -> None:
+        if (header.dtype, header.shape) != (np.dtype(dtype), shape):
+            raise UnusableError(where, f"{header.shape} {header.dtype}", f"{shape} {dtype}, as case.json says")
+
+    return accept
+
+
+def _check_hash(where: Path, found: str, allowed: str | None) -> None:
+    if found != allowed:
+        raise UnusableError(
+            where, f"contents with the hash {found[:16]}...", f"{(allowed or 'none')[:16]}..., of the manifest"
+        )
+
+
+def _scene_of(document: Document) -> dict[str, Any]:
+    return {"params": document.params, "scene": document.scene}
+
+
+def _check_same(where: str, found: Any, allowed: Any) -> None:
+    """Raise UnusableError for the first part of a document that differs from what the rest of it says."""
+    if isinstance(found, BaseModel) and type(found) is type(allowed):
+        found, allowed = dict(found), dict(allowed)
+    if isinstance(found, dict) and isinstance(allowed, dict) and found.keys() == allowed.keys():
+        for name in found:
+            _check_same(f"{where}{'' if where.endswith(' ') else '.'}{name}", found[name], allowed[name])
+    elif isinstance(found, tuple) and isinstance(allowed, tuple) and len(found) == len(allowed):
+        for i, pair in enumerate(zip(found, allowed, strict=True)):
+            _check_same(f"{where}[{i}]", *pair)
+    elif found != allowed:
+        raise UnusableError(where, found, f"{allowed}, which the rest of the case makes of it")

@@ -1,0 +1,176 @@
+"""The final picture, from the case alone: all that a pixel may show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.accept.bytes import allows_color
+from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.referees.displacement.arrays import joined
+from ibr_ref.oracle.referees.displacement.constants import Constants, constants_of
+from ibr_ref.oracle.referees.displacement.hits import Hits, hits_of
+from ibr_ref.oracle.referees.displacement.raster import Fragments, fragments_of
+from ibr_ref.oracle.referees.displacement.shown import lighted, shades_of, winners_of
+from ibr_ref.oracle.referees.displacement.vertex import faces_of, triangles_of
+
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+BYTE = 1.0 / 255.0
+"""The quantization of a picture: what differs by no more does not show (conventions.md, "Numbers")."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Candidates:
+    """What the case alone says of the stages up to the depth test."""
+
+    constants: list[Constants]
+    fragments: Fragments
+    hits: Hits
+    """Of all fragments."""
+    possible: Bools
+    """(n,) whether the outcome may be what its pixel shows."""
+    empty: Bools
+    """(pixels,) whether a pixel may show nothing."""
+    lost: Ints
+    """Pixels with more branches than are followed."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Accepted:
+    """(n,) pictures of pixels; a port's pixel must agree with one of them."""
+
+    pixel: Ints
+    polygon: Ints
+    """-1: the background."""
+    hit_index: Ints
+    color: Bounded
+    """(n, 3)."""
+    depth: Bounded
+    lost: Ints
+    """Pixels where anything is accepted."""
+
+
+_CANDIDATES: WeakKeyDictionary[Case, dict[str, Candidates]] = WeakKeyDictionary()
+_ACCEPTED: WeakKeyDictionary[Case, dict[str, Accepted]] = WeakKeyDictionary()
+
+
+def candidates_of(case: Case, device: Device) -> Candidates:
+    """Computed once for a case and a device, for as long as the case lives."""
+    known = _CANDIDATES.setdefault(case, {})
+    if device.name not in known:
+        known[device.name] = _candidates(case, device)
+    return known[device.name]
+
+
+def _candidates(case: Case, device: Device) -> Candidates:
+    scene, params, camera = case.scene, case.params, case.scene.camera
+    constants = constants_of(scene, device)
+    triangles = [triangles_of(faces_of(each, params)) for each in constants]
+    fragments = fragments_of(triangles, device, camera.width, camera.height)
+    hits, lost = hits_of(constants, params, fragments)
+    found = winners_of(hits, len(constants), camera.width * camera.height)
+    return Candidates(
+        constants=constants, fragments=fragments, hits=hits, possible=found.possible, empty=found.empty, lost=lost
+    )
+
+
+def accepted_of(case: Case, device: Device) -> Accepted:
+    """Computed once for a case and a device, for as long as the case lives."""
+    known = _ACCEPTED.setdefault(case, {})
+    if device.name not in known:
+        known[device.name] = _accepted(case, device)
+    return known[device.name]
+
+
+def _accepted(case: Case, device: Device) -> Accepted:
+    found = candidates_of(case, device)
+    hits = found.hits.take(found.possible & found.hits.kept)
+    shades = shades_of(found.constants, case.params, hits)
+    index, color = lighted(found.constants, hits, shades)
+    at = shades.hit[index]
+    empty = np.flatnonzero(found.empty)
+    background = uploaded(np.broadcast_to(np.asarray(case.scene.background, np.float64), (len(empty), 3)), device)
+    nothing = np.full(len(empty), -1)
+    return Accepted(
+        pixel=np.concatenate([hits.pixel[at], empty]),
+        polygon=np.concatenate([hits.polygon[at], nothing]),
+        hit_index=np.concatenate([hits.hit_index[at], nothing]),
+        color=joined([color, background]),
+        depth=joined([hits.depth[at], exact(np.ones(len(empty)), device)]).widened(device.depth_step),
+        lost=found.lost,
+    )
+
+
+def judge_image(case: Case, device: Device, handed: Handed) -> Judgement:
+    """Colour, and depth where it is handed in: one legal outcome must agree with both."""
+    accepted = accepted_of(case, device)
+    height, width = case.scene.camera.height, case.scene.camera.width
+    pixels = height * width
+    color = np.asarray(handed["color"]).reshape(pixels, 3)
+    names = ("color", "depth") if "depth" in handed else ("color",)
+    agrees = [allows_color(accepted.color, color[accepted.pixel]).all(axis=1)]
+    if "depth" in handed:
+        depth = np.asarray(handed["depth"], np.float64).reshape(pixels)
+        agrees.append(accepted.depth.allows(depth[accepted.pixel]))
+    right, blame = judged(accepted.pixel, agrees, pixels)
+    right[accepted.lost] = True
+    blame[right] = -1
+    shape = (height, width)
+    return Judgement(
+        stage="image",
+        element="pixel",
+        arrays=names,
+        wrong=~right.reshape(shape),
+        undecided=undecided(case, accepted).reshape(shape),
+        width=hull_width(accepted, pixels).reshape(shape),
+        blame=blame.reshape(shape),
+    )
+
+
+def judged(element: Ints, agrees: list[Bools], count: int) -> tuple[Bools, NDArray[np.int8]]:
+    """Whether any outcome agrees with all arrays, and the first array that no outcome agrees with.
+
+    Where each array agrees with some outcome, but none with all, the first one that breaks the agreement is blamed.
+    """
+    blame = np.full(count, -1, np.int8)
+    together = np.ones(len(element), np.bool_)
+    right = np.ones(count, np.bool_)
+    for name, each in enumerate(agrees):
+        together = together & each
+        right = np.zeros(count, np.bool_)
+        right[element[together]] = True
+        blame[~right & (blame < 0)] = name
+    return right, blame
+
+
+def undecided(case: Case, accepted: Accepted) -> Bools:
+    """(pixels,) a legal outcome lies more than one lattice step from the reference's, or shows."""
+    stages = case.frame.stages
+    pixels = case.frame.depth.size
+    index, polygon = (stages[name].reshape(-1).astype(np.int64) for name in ("march.hit_index", "raster.patch_id"))
+    reference = case.frame.color.reshape(-1, 3)[accepted.pixel]
+    beyond = np.maximum(accepted.color.low - reference, reference - accepted.color.high).max(axis=1) > BYTE
+    same = (accepted.polygon == polygon[accepted.pixel]) & (index[accepted.pixel] >= 0) & (accepted.hit_index >= 0)
+    far = same & (np.abs(accepted.hit_index - index[accepted.pixel]) > 1)
+    result = np.zeros(pixels, np.bool_)
+    result[accepted.pixel[beyond | far]] = True
+    result[accepted.lost] = True
+    return result
+
+
+def hull_width(accepted: Accepted, pixels: int) -> NDArray[np.float64]:
+    """(pixels,) from the least to the largest accepted colour, of the widest channel."""
+    low, high = np.full((pixels, 3), np.inf), np.full((pixels, 3), -np.inf)
+    np.minimum.at(low, accepted.pixel, accepted.color.low)
+    np.maximum.at(high, accepted.pixel, accepted.color.high)
+    width = (high - low).max(axis=1)
+    width[accepted.lost] = 1.0
+    return np.where(np.isfinite(width), np.maximum(width, 0.0), np.nan)

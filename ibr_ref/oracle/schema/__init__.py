@@ -1,0 +1,14 @@
+"""`case.json`: strict models of everything that a port is given, from cases and back; the JSON Schema made of them."""
+
+from ibr_ref.oracle.schema.document import (
+    ADAPTER,
+    Document,
+    build,
+    describe,
+    describe_inputs,
+    input_files,
+    schema,
+    schema_text,
+)
+
+__all__ = ["ADAPTER", "Document", "build", "describe", "describe_inputs", "input_files", "schema", "schema_text"]

@@ -1,0 +1,169 @@
+"""Scenes and parameters of protruded displacement mapping in `case.json`."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any, Literal
+
+from pydantic import Field
+
+from ibr_ref import displacement
+from ibr_ref.displacement.patch_space import uniforms
+from ibr_ref.oracle.schema.base import (
+    ArrayFile,
+    Inputs,
+    Matrix3,
+    Model,
+    Stored,
+    Vector2,
+    Vector3,
+    Vector4,
+    numbers,
+    texels,
+)
+from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
+from ibr_ref.oracle.schema.light import LightFile, build_light, describe_light
+from ibr_ref.scene import BasePolygon
+
+
+class DisplacementParams(Model):
+    """Parameters of the search, named as in the paper's sections 3 and 4."""
+
+    linear_steps: int
+    """N, samples of the linear search."""
+    binary_steps: int
+    """M, halvings of the binary search."""
+    steep_threshold: float
+    """delta: a hit is on a wall if h - a > delta, a the height map one linear step before."""
+    interval: Literal["paper", "volume"]
+    """From the top of the volume to the polygon's plane, or the ray's own stretch inside the volume."""
+    faces: Literal["auxiliary", "base", "extended"]
+    """Base and side faces that are turned away from the eye; the base alone; the base enlarged."""
+    depth: Literal["displaced", "polygon"]
+    """Window depth of the hit, or of the face."""
+    shadow_steps: int
+    """S, samples towards the light; 0: no self-shadow."""
+    shadow_bias: float
+    """In units of h."""
+    method: Literal["protruded", "exact", "relief", "texture"]
+
+
+class PatchSpace(Model):
+    """Constants of the polygon's draw call, as the reference computes them."""
+
+    axes: Matrix3
+    """Rows U, V and height_scale n: world = corner + u U + v V + h (height_scale n)."""
+    rows: Matrix3
+    """Reciprocal basis: (u, v, h) = rows (world - corner)."""
+    frame: Matrix3
+    """Tangent frame of the normal map: x = U/|U|, y = n x x, z = n."""
+    eye: Vector4
+    """The eye in patch space, homogeneous: the way from p towards it is xyz - w p."""
+    light: Vector4
+
+
+class PolygonFile(Model):
+    """A base polygon, the bottom of the displaced volume; patch_id of the stages is its index in the scene."""
+
+    corner: Vector3
+    edge_u: Vector3
+    edge_v: Vector3
+    height_scale: float
+    """World units of height 1, along normalize(edge_u x edge_v)."""
+    domain: Literal["clip", "repeat"]
+    """Wrap mode of all its maps but the facade's; "clip": the map ends at its border, and fetches clamp."""
+    facade_tile: Vector2
+    """Width and height of one facade tile, world units."""
+    height_map: ArrayFile
+    color_map: ArrayFile
+    normal_map: ArrayFile | None
+    """None: normals come from the heights, by central differences."""
+    facade_map: ArrayFile | None
+    """None: walls take the colour map."""
+    patch_space: PatchSpace
+
+
+class DisplacementScene(Model):
+    """Base polygons, drawn in order."""
+
+    camera: CameraFile
+    light: LightFile
+    background: Vector3
+    polygons: tuple[PolygonFile, ...] = Field(min_length=1)
+
+
+def describe_params(params: displacement.Params) -> DisplacementParams:
+    """The parameters as a document."""
+    return DisplacementParams(**asdict(params))
+
+
+def build_params(file: DisplacementParams) -> displacement.Params:
+    """The parameters of a document."""
+    return displacement.Params(**file.model_dump())
+
+
+def describe_scene(scene: displacement.Scene, inputs: Inputs) -> DisplacementScene:
+    """The scene as a document; its maps go into `inputs`."""
+    return DisplacementScene(
+        camera=describe_camera(scene.camera),
+        light=describe_light(scene.light),
+        background=numbers(scene.background),
+        polygons=tuple(_polygon(scene, i, polygon, inputs) for i, polygon in enumerate(scene.polygons)),
+    )
+
+
+def _polygon(scene: displacement.Scene, index: int, polygon: BasePolygon, inputs: Inputs) -> PolygonFile:
+    stem = f"polygon{index}"
+    optional = {
+        "normal_map": (polygon.normal_map, "n = 2 c - 1 in the tangent frame, normalized after the bilinear fetch"),
+        "facade_map": (polygon.facade_map, "the tile that covers steep walls, repeated; linear colour"),
+    }
+    constants = uniforms(polygon, scene.camera, scene.light)
+    domain: Literal["clip", "repeat"] = "repeat" if polygon.domain == "repeat" else "clip"
+    return PolygonFile(
+        corner=numbers(polygon.corner),
+        edge_u=numbers(polygon.edge_u),
+        edge_v=numbers(polygon.edge_v),
+        height_scale=polygon.height_scale,
+        domain=domain,
+        facade_tile=polygon.facade_tile,
+        height_map=inputs.texture(f"{stem}.height_map", polygon.height_map, "height h in [0, 1]; row 0 is v = 0"),
+        color_map=inputs.texture(f"{stem}.color_map", polygon.color_map, "linear colour; row 0 is v = 0"),
+        **{
+            name: None if map_ is None else inputs.texture(f"{stem}.{name}", map_, meaning)
+            for name, (map_, meaning) in optional.items()
+        },
+        patch_space=PatchSpace(
+            axes=numbers(constants.axes),
+            rows=numbers(constants.rows),
+            frame=numbers(constants.frame),
+            eye=numbers(constants.eye),
+            light=numbers(constants.light),
+        ),
+    )
+
+
+def build_scene(file: DisplacementScene, stored: Stored) -> displacement.Scene:
+    """The scene of a document."""
+    return displacement.Scene(
+        camera=build_camera(file.camera),
+        light=build_light(file.light),
+        background=file.background,
+        polygons=[_built_polygon(polygon, stored) for polygon in file.polygons],
+    )
+
+
+def _built_polygon(file: PolygonFile, stored: Stored) -> BasePolygon:
+    maps: Any = {}
+    for name in ("height_map", "color_map", "normal_map", "facade_map"):
+        map_: ArrayFile | None = getattr(file, name)
+        maps[name] = None if map_ is None else texels(stored, map_)
+    return BasePolygon(
+        corner=file.corner,
+        edge_u=file.edge_u,
+        edge_v=file.edge_v,
+        height_scale=file.height_scale,
+        domain=file.domain,
+        facade_tile=file.facade_tile,
+        **maps,
+    )

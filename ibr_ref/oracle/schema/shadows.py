@@ -1,0 +1,235 @@
+"""Scenes, parameters and prepared maps of shadows by image warping in `case.json`."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from ibr_ref import shadows
+from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Matrix2x3, Model, Stored, Vector2, Vector3, numbers
+from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
+from ibr_ref.scene import AreaLight, Mesh, checks
+from ibr_ref.shadows.samples import samples_of, seen_offset
+
+
+class ShadowsParams(Model):
+    """Maps, warps and light samples."""
+
+    map_size: int
+    """S, texels a side."""
+    rows: int
+    """R, control points downwards."""
+    columns: int
+    """C, control points across."""
+    content: Literal["mask", "depth"]
+    map_samples: int
+    """k: a mask's texel is the coverage of k x k samples."""
+    quantize: Literal[8] | None
+    """8: both sides of a comparison of depths are rounded to 8 bits."""
+    pcf: bool
+    """Four comparisons of depths, mixed bilinearly."""
+    bias: float
+    """Of depths, in units of window depth."""
+    policy: Literal["dissolve", "nearest"]
+    light_samples: Literal[1, 5, 9] | tuple[Vector3, ...]
+    """1, 5 or 9, or world positions; `scene.light_samples` lists them all."""
+    accumulation: Literal["float", "unorm8"]
+    method: Literal["warp", "direct", "grid"]
+    grid_size: int
+    grid_mix: bool
+    grid_storage: Literal["raw", "haar"]
+    grid_threshold: float
+
+
+class MeshFile(Model):
+    """Indexed triangles."""
+
+    vertices: ArrayFile
+    triangles: ArrayFile
+    color: Vector3 | ArrayFile
+    """Linear: of the whole mesh, or (V, 3) of its vertices."""
+
+
+class AreaLightFile(Model):
+    """A light that sees what it lights through a square frustum."""
+
+    position: Vector3
+    """The centre."""
+    target: Vector3
+    up: Vector3
+    vertical_fov: float
+    """Degrees, both ways."""
+    near: float
+    far: float
+    half_edges: Matrix2x3
+    """a and b: the light is the parallelogram position +- a +- b."""
+    camera: CameraFile
+    """Of the maps, from the centre."""
+
+
+class LightSampleFile(Model):
+    """One sample of the light, in the order of accumulation."""
+
+    position: Vector3
+    displacement: Vector2
+    """position - centre, along the offset axes."""
+    seen_offset: Vector2
+    """offset - displacement: where the object stands as the sample sees it; the warp is to this place."""
+    camera: CameraFile
+    """It looks from the sample in the centre's directions; project.* uses its matrices."""
+
+
+class MapsFile(Model):
+    """The nine maps and their control points."""
+
+    positions: ArrayFile
+    texels: ArrayFile
+    controls: ArrayFile
+    content: Literal["mask", "depth"]
+    samples: int
+    """k."""
+    source: str = Field(pattern="^[0-9a-f]{64}$")
+    """The reference's digest of caster, axes and light."""
+
+
+class ShadowsScene(Model):
+    """Receivers and a caster that moves along two axes; drawn are the receivers in order, then the caster."""
+
+    camera: CameraFile
+    light: AreaLightFile
+    light_samples: tuple[LightSampleFile, ...] = Field(min_length=1)
+    receivers: tuple[MeshFile, ...] = Field(min_length=1)
+    caster: MeshFile
+    """Its vertices stand at v + x a + y b for the offset (x, y)."""
+    offset: Vector2
+    offset_axes: Matrix2x3
+    """a and b."""
+    offset_range: tuple[Vector2, Vector2]
+    """(x0, x1), (y0, y1)."""
+    ambient: float = Field(ge=0.0, le=1.0)
+    """Share of the light that reaches shadows."""
+    background: Vector3
+    maps: MapsFile | None
+    """None: method is not "warp", and the maps are rendered."""
+
+
+def describe_params(params: shadows.Params) -> ShadowsParams:
+    """The parameters as a document."""
+    values = {field.name: getattr(params, field.name) for field in fields(params)}
+    if isinstance(params.light_samples, np.ndarray):
+        values["light_samples"] = numbers(params.light_samples)
+    return ShadowsParams(**values)
+
+
+def build_params(file: ShadowsParams) -> shadows.Params:
+    """The parameters of a document."""
+    return shadows.Params(**file.model_dump())
+
+
+def describe_scene(scene: shadows.Scene, params: shadows.Params, maps: Any, inputs: Inputs) -> ShadowsScene:
+    """The scene as a document; meshes and prepared maps go into `inputs`."""
+    samples = []
+    for sample in samples_of(scene, params):
+        camera = scene.light.camera(params.map_size, sample.position)
+        samples.append(
+            LightSampleFile(
+                position=numbers(sample.position),
+                displacement=numbers(sample.displacement),
+                seen_offset=numbers(seen_offset(scene, sample)),
+                camera=describe_camera(camera),
+            )
+        )
+    return ShadowsScene(
+        camera=describe_camera(scene.camera),
+        light=_light(scene.light, params.map_size),
+        light_samples=tuple(samples),
+        receivers=tuple(_mesh(f"receiver{i}", mesh, inputs) for i, mesh in enumerate(scene.receivers)),
+        caster=_mesh("caster", scene.caster, inputs),
+        offset=numbers(scene.offset),
+        offset_axes=numbers(scene.offset_axes),
+        offset_range=numbers(scene.offset_range),
+        ambient=scene.ambient,
+        background=numbers(scene.background),
+        maps=_maps(params, maps, inputs),
+    )
+
+
+def _light(light: AreaLight, map_size: int) -> AreaLightFile:
+    return AreaLightFile(
+        position=numbers(light.position),
+        target=numbers(light.target),
+        up=numbers(light.up),
+        vertical_fov=light.vertical_fov,
+        near=light.near,
+        far=light.far,
+        half_edges=numbers(light.half_edges),
+        camera=describe_camera(light.camera(map_size)),
+    )
+
+
+def _mesh(stem: str, mesh: Mesh, inputs: Inputs) -> MeshFile:
+    color = np.asarray(mesh.color)
+    return MeshFile(
+        vertices=inputs.array(f"{stem}.vertices", np.asarray(mesh.vertices), "(V, 3) positions"),
+        triangles=inputs.array(f"{stem}.triangles", np.asarray(mesh.triangles), "(T, 3) indices of vertices"),
+        color=numbers(color)
+        if color.ndim == 1
+        else inputs.array(f"{stem}.color", color, "(V, 3) linear colours; varyings"),
+    )
+
+
+def _maps(params: shadows.Params, maps: Any, inputs: Inputs) -> MapsFile | None:
+    if params.method != "warp":
+        if maps is not None:
+            raise checks.reject('inputs["maps"]', type(maps).__name__, f"none with method={params.method!r}")
+        return None
+    if not isinstance(maps, shadows.Maps):
+        raise checks.reject('inputs["maps"]', type(maps).__name__, 'shadows.Maps with method="warp"')
+    texels = "counts of covered samples, 0 to k^2: coverage is count / k^2"
+    controls = "[j, i, row, column] = (u, v) in [0, 1]^2 of map [j, i]"
+    content: Literal["mask", "depth"] = "mask" if maps.content == "mask" else "depth"
+    return MapsFile(
+        positions=inputs.array(
+            "maps.positions", maps.positions, "[j, i] = offset (x_i, y_j) of the caster in map [j, i]"
+        ),
+        texels=inputs.array("maps.texels", maps.texels, texels if content == "mask" else "window depth; 1 where empty"),
+        controls=inputs.array("maps.controls", maps.controls, controls),
+        content=content,
+        samples=maps.samples,
+        source=maps.source,
+    )
+
+
+def build_scene(file: ShadowsScene, stored: Stored) -> tuple[shadows.Scene, shadows.Maps | None]:
+    """The scene of a document, and its prepared maps."""
+    light = file.light.model_dump(exclude={"camera"})
+    scene = shadows.Scene(
+        receivers=[_built_mesh(mesh, stored) for mesh in file.receivers],
+        caster=_built_mesh(file.caster, stored),
+        light=AreaLight(**light),
+        camera=build_camera(file.camera),
+        offset=file.offset,
+        offset_axes=file.offset_axes,
+        offset_range=file.offset_range,
+        ambient=file.ambient,
+        background=file.background,
+    )
+    if file.maps is None:
+        return scene, None
+    maps = shadows.Maps(
+        positions=stored[file.maps.positions.file],
+        texels=stored[file.maps.texels.file],
+        controls=stored[file.maps.controls.file],
+        content=file.maps.content,
+        samples=file.maps.samples,
+        source=file.maps.source,
+    )
+    return scene, maps
+
+
+def _built_mesh(file: MeshFile, stored: Stored) -> Mesh:
+    color = stored[file.color.file] if isinstance(file.color, ArrayFile) else file.color
+    return Mesh(vertices=stored[file.vertices.file], triangles=stored[file.triangles.file], color=color)

@@ -1,0 +1,134 @@
+"""The answer: PASS, FAIL or INCONCLUSIVE, and all that a port author needs to find the place."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from pydantic import BaseModel, ConfigDict
+
+
+class Outcome(StrEnum):
+    """What a verdict can be, and the exit code of `ibr-ref check`."""
+
+    PASS = "PASS"
+    FAIL = "FAIL"
+    INCONCLUSIVE = "INCONCLUSIVE"
+
+    @property
+    def exit_code(self) -> int:
+        """0 PASS, 1 FAIL, 2 INCONCLUSIVE."""
+        return [*Outcome].index(self)
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Box(_Record):
+    """Where wrong elements lie: the first and last index along each axis, both inclusive."""
+
+    first: tuple[int, ...]
+    last: tuple[int, ...]
+
+
+class TraceStep(_Record):
+    """One fetch, comparison or result on the way to an element (`judgement.TraceRow`)."""
+
+    step: str
+    reference: str
+    port: str
+    margin: float | None = None
+    bound: float | None = None
+    note: str = ""
+
+
+class Witness(_Record):
+    """One wrong element, the smallest: the first in reading order among those that lie farthest from any undecided one."""
+
+    stage: str
+    element: str
+    index: tuple[int, ...]
+    array: str
+    reference: str
+    port: str
+    trace: tuple[TraceStep, ...]
+
+
+class StageVerdict(_Record):
+    """One stage, judged on the port's own inputs where it handed them in; "image" is the picture, judged from the case."""
+
+    stage: str
+    element: str
+    arrays: tuple[str, ...]
+    """The port's arrays that were compared."""
+    replayed: tuple[str, ...]
+    """The port's own arrays that the stage was fed with."""
+    elements: int
+    wrong: int
+    undecided: int
+    box: Box | None
+    """Around the wrong elements."""
+    blamed: dict[str, int]
+    """For each array in how many elements it is the first that disagrees."""
+    median_width: float | None
+    """Of the accepted sets of continuous results."""
+
+    @property
+    def right(self) -> bool:
+        """Whether every element is legal."""
+        return self.wrong == 0
+
+
+class Convention(_Record):
+    """A common mistake of conventions, undone on the port's image: how many pixels are wrong then."""
+
+    name: str
+    wrong: int
+    explains: bool
+    """No pixel is left, or fewer than a tenth."""
+
+
+class Bias(_Record):
+    """A parameter whose change would explain the difference."""
+
+    parameter: str
+    value: float
+    """What the case has."""
+    looks_like: float
+    """What the port seems to have."""
+    explained: float
+    """Share of the squared difference that the change explains, in [0, 1]."""
+    legal: float
+    """The largest change that a legal device could seem to have."""
+
+
+class Verdict(_Record):
+    """What the oracle says of one submission."""
+
+    outcome: Outcome
+    case: str
+    method: str
+    reasons: tuple[str, ...] = ()
+    """Of an INCONCLUSIVE: what is missing or unusable."""
+    profile: str | None = None
+    """PASS: the tightest profile tried that explains every element. FAIL: the one that the counts are by."""
+    declared: bool = False
+    """Whether the port, or the caller, named the profile."""
+    tried: dict[str, int] = {}
+    """Profiles in the order in which they were tried, and how many elements each leaves unexplained."""
+    stages: tuple[StageVerdict, ...] = ()
+    first_wrong_stage: str | None = None
+    witness: Witness | None = None
+    conventions: tuple[Convention, ...] = ()
+    """Those that were worth a judgement."""
+    biases: tuple[Bias, ...] = ()
+    undecided_share: float | None = None
+    """Of the picture's pixels."""
+    median_width: float | None = None
+    """Of the picture's accepted colours."""
+
+    def words(self) -> str:
+        """The verdict for people, some ten lines."""
+        from ibr_ref.oracle.words import words
+
+        return words(self)

@@ -1,0 +1,69 @@
+"""A verdict in words."""
+
+from __future__ import annotations
+
+from ibr_ref.oracle.verdict import Outcome, StageVerdict, Verdict, Witness
+
+
+def words(verdict: Verdict) -> str:
+    """Some ten lines: what, where first, how many, why one of them is wrong, what would explain it."""
+    lines = [_headline(verdict)]
+    lines += [f"  {reason}" for reason in verdict.reasons]
+    lines += [_stage_line(stage) for stage in verdict.stages]
+    if verdict.witness is not None:
+        lines += _witness_lines(verdict.witness)
+    for convention in verdict.conventions:
+        if convention.explains:
+            left = "all of it" if convention.wrong == 0 else f"all but {convention.wrong:,} pixels"
+            lines.append(f"  {convention.name} would explain {left}.")
+    for bias in verdict.biases:
+        lines.append(
+            f"  {bias.parameter} = {bias.looks_like:.6g} in place of {bias.value:.6g} would explain "
+            f"{100 * bias.explained:.0f} % of the difference (a legal device: within {bias.legal:.2g})."
+        )
+    if verdict.undecided_share is not None:
+        width = (
+            "" if verdict.median_width is None else f", median width of the accepted colours {verdict.median_width:.2g}"
+        )
+        lines.append(f"  Undecided pixels: {100 * verdict.undecided_share:.3f} %{width}.")
+    return "\n".join(lines)
+
+
+def _headline(verdict: Verdict) -> str:
+    head = f"{verdict.outcome}: {verdict.case}"
+    if verdict.outcome is Outcome.INCONCLUSIVE:
+        return f"{head}, the submission cannot be judged."
+    how = "declared" if verdict.declared else "the loosest tried" if verdict.outcome is Outcome.FAIL else "the tightest"
+    if verdict.outcome is Outcome.PASS:
+        return f"{head}, every element is what a correct port may have on {verdict.profile} ({how})."
+    return f"{head}, first wrong in stage {verdict.first_wrong_stage}, judged by {verdict.profile} ({how})."
+
+
+def _stage_line(stage: StageVerdict) -> str:
+    own = f", fed with the port's {', '.join(stage.replayed)}" if stage.replayed else ""
+    if stage.right:
+        return f"  {stage.stage}: right ({stage.elements:,} {_plural(stage.element)}{own})."
+    box = stage.box
+    where = "" if box is None else f", from {list(box.first)} to {list(box.last)}"
+    blamed = ", ".join(f"{name} in {count:,}" for name, count in stage.blamed.items())
+    share = 100 * stage.wrong / stage.elements
+    return f"  {stage.stage}: {stage.wrong:,} {_plural(stage.element)} wrong ({share:.3g} %){where}: {blamed}{own}."
+
+
+def _plural(element: str) -> str:
+    return "vertices" if element == "vertex" else f"{element}s"
+
+
+def _witness_lines(witness: Witness) -> list[str]:
+    lines = [
+        f"  Witness: {witness.element} {list(witness.index)}, {witness.array}: "
+        f"reference {witness.reference}, port {witness.port}."
+    ]
+    for step in witness.trace:
+        decided = ""
+        if step.margin is not None:
+            decided = f"  (margin {step.margin:.3g}" + (f", bound {step.bound:.3g})" if step.bound is not None else ")")
+        port = f" | port {step.port}" if step.port else ""
+        note = f"  {step.note}" if step.note else ""
+        lines.append(f"    {step.step}: {step.reference}{port}{decided}{note}")
+    return lines
