@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,9 @@ from ibr_ref.oracle.referees.splatting import SplattingReferee
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 
-from tests.ports.normals import normal_codes  # noqa: E402
-from tests.ports.splatting import Port, codes_of_atlas  # noqa: E402
+from tests.ports.described import described  # noqa: E402
+from tests.ports.gl import Frame  # noqa: E402
+from tests.ports.splatting import Port  # noqa: E402
 
 REFEREE = SplattingReferee()
 LIGHTS = {
@@ -92,27 +94,38 @@ def constant(width: float) -> splatting.Params:
     )
 
 
-def case(described: splatting.Scene, params: splatting.Params) -> Case:
+def case(view: splatting.Scene, params: splatting.Params) -> Case:
     """With the reference's normals, which ports are given."""
-    codes = codes_of_atlas(splatting.render(described, params).stages)
+    frame = splatting.render(view, params)
     return Case(
         name="port",
         method="splatting",
         kind="typical",
         about="",
         profile="webgpu",
-        scene=described,
+        scene=view,
         params=params,
-        inputs={"normals": codes},
+        inputs={"normals": codes_of_atlas(frame.stages)},
     )
 
 
-def judged(port: Port, given: Case, profile: str = "webgpu", **options: Any) -> dict[str, Judgement]:
-    """What the referee says of the port's frame, by stage."""
-    drawn = port.render(given.scene, given.params, **{"normals": given.inputs["normals"], **options})
-    handed = {**drawn.stages, "color": drawn.color, "depth": drawn.depth}
-    found = REFEREE.judge_stages(given, PROFILES[profile], handed)
-    found.append(REFEREE.judge_image(given, PROFILES[profile], {"color": drawn.color, "depth": drawn.depth}))
+def codes_of_atlas(stages: dict[str, Any]) -> list[np.ndarray]:
+    """The (H, W, 3) uint8 normals of every image."""
+    pages = stages["atlas.normal"]
+    return [pages[page][y : y + height, x : x + width] for page, x, y, width, height in stages["atlas.rects"].tolist()]
+
+
+def drawn(port: Port, given: Case, **options: Any) -> Frame:
+    """The port's frame of an exported case."""
+    exported = described("splatting", given.scene, given.params, **given.inputs)
+    return port.render(exported.scene, exported.params, **options)
+
+
+def judged(given: Case, frame: Frame, profile: str = "webgpu") -> dict[str, Judgement]:
+    """What the referee says of a port's frame, by stage."""
+    picture = {"color": frame.color, "depth": frame.depth}
+    found = REFEREE.judge_stages(given, PROFILES[profile], {**frame.stages, **picture})
+    found.append(REFEREE.judge_image(given, PROFILES[profile], picture))
     return {judgement.stage: judgement for judgement in found}
 
 
@@ -128,7 +141,7 @@ def assert_legal(found: dict[str, Judgement], most_undecided: float) -> None:
 @pytest.mark.parametrize("view", ["perspective", "orthographic"])
 def test_vertices_are_legal(port: Port, view: str, light: str) -> None:
     given = case(scene(view, light), law())
-    found = judged(port, given)["vertex"]
+    found = judged(given, drawn(port, given))["vertex"]
     kept = given.frame.stages["vertex.width"] > 0.0
     assert kept.sum() > 1000
     assert (~kept).sum() > 100, "the planes should cut some points off"
@@ -144,14 +157,14 @@ def test_vertices_are_legal(port: Port, view: str, light: str) -> None:
 def test_pictures_are_legal(port: Port, primitive: str, shape: str, view: str, light: str) -> None:
     given = case(scene(view, light), law(shape))
     assert (given.frame.stages["raster.overdraw"] > 0).mean() > 0.2
-    assert_legal(judged(port, given, primitive=primitive), most_undecided=0.03)
+    assert_legal(judged(given, drawn(port, given, primitive=primitive)), most_undecided=0.03)
 
 
 @pytest.mark.parametrize("primitive", ["points", "quads"])
 def test_the_timed_variant_draws_the_same_picture(port: Port, primitive: str) -> None:
-    described = scene(light="point")
-    staged = port.render(described, law(), primitive=primitive)
-    timed = port.render(described, law(), primitive=primitive, stages=False)
+    given = case(scene(light="point"), law())
+    staged = drawn(port, given, primitive=primitive)
+    timed = drawn(port, given, primitive=primitive, stages=False)
     assert timed.stages == {}
     np.testing.assert_array_equal(staged.depth, timed.depth)
     assert abs(staged.color - timed.color).max() < 0.5001 / 255.0
@@ -160,12 +173,14 @@ def test_the_timed_variant_draws_the_same_picture(port: Port, primitive: str) ->
 @pytest.mark.parametrize("width", [1.0, 1.5, 2.0, 2.0 + 1.0 / 128.0, 3.0])
 def test_quads_of_constant_width_leave_only_the_snapping_of_centres_open(port: Port, width: float) -> None:
     """Widths that are multiples of 1/128 have corners on the raster of 1/256, so that nothing is rounded there."""
-    assert_legal(judged(port, case(scene(), constant(width)), "ieee32", primitive="quads"), most_undecided=0.01)
+    given = case(scene(), constant(width))
+    assert_legal(judged(given, drawn(port, given, primitive="quads"), "ieee32"), most_undecided=0.01)
 
 
 @pytest.mark.parametrize("width", [1.0 + 1.0 / 256.0, 2.0 + 1.0 / 256.0, 3.0 - 1.0 / 256.0])
 def test_sprites_of_widths_between_the_steps_have_no_border_on_a_centre(port: Port, width: float) -> None:
-    assert_legal(judged(port, case(scene(), constant(width))), most_undecided=0.03)
+    given = case(scene(), constant(width))
+    assert_legal(judged(given, drawn(port, given, primitive="points")), most_undecided=0.03)
 
 
 def test_the_half_open_rule_where_every_border_is_on_a_pixel_centre(port: Port) -> None:
@@ -173,7 +188,7 @@ def test_the_half_open_rule_where_every_border_is_on_a_pixel_centre(port: Port) 
     image = reference("perspective", (3.0, 0.0, 0.5))
     given = case(splatting.Scene(images=[image], camera=image.camera, light=None), constant(2.0))
     assert given.frame.stages["raster.overdraw"].tolist() == [[4] * 29 + [2]] * 21 + [[2] * 29 + [1]]
-    assert_legal(judged(port, given, "ieee32", primitive="quads"), most_undecided=0.01)
+    assert_legal(judged(given, drawn(port, given, primitive="quads"), "ieee32"), most_undecided=0.01)
 
 
 def test_a_splat_whose_centre_is_outside_reaches_in(port: Port) -> None:
@@ -187,39 +202,28 @@ def test_a_splat_whose_centre_is_outside_reaches_in(port: Port) -> None:
     window = stages["vertex.window"][stages["raster.splat"][stages["raster.splat"] >= 0]]
     assert ((window < 0.0) | (window > [40.0, 32.0])).any(), "no winner has its centre outside: the test says nothing"
     for primitive in ("points", "quads"):
-        assert_legal(judged(port, given, primitive=primitive), most_undecided=0.03)
-
-
-def test_normals_made_in_numpy_are_the_reference_s() -> None:
-    described = scene()
-    codes = codes_of_atlas(splatting.render(described, law(), stages=True).stages)
-    for image, theirs in zip(described.images, codes, strict=True):
-        np.testing.assert_array_equal(normal_codes(image), theirs)
+        assert_legal(judged(given, drawn(port, given, primitive=primitive)), most_undecided=0.03)
 
 
 def test_a_broken_port_is_noticed(port: Port) -> None:
-    """Normals, a law and a depth that are slightly off: none may pass."""
+    """Normals and laws that are slightly off: none may pass."""
     given = case(scene(light="point"), law())
     codes = given.inputs["normals"]
     brighter = [np.where(each > 0, np.minimum(each.astype(int) + 1, 255), 0).astype(np.uint8) for each in codes]
-    found = judged(port, given, normals=brighter)
+    found = judged(given, drawn(port, replace(given, inputs={"normals": brighter})))
     assert [stage for stage, judgement in found.items() if judgement.wrong.any()] == ["vertex", "image"]
     for alpha in (1.0001, 1.1):
         wider = splatting.Params(alpha=alpha, beta=0.01, gamma=0.02, delta=0.12)
-        drawn = port.render(given.scene, wider, normals=codes)
-        first = REFEREE.judge_stages(given, PROFILES["gl"], {**drawn.stages, "color": drawn.color})[0]
-        assert first.stage == "vertex"
-        assert {first.arrays[i] for i in first.blame[first.wrong]} == {"vertex.width"}
-    assert REFEREE.judge_image(given, PROFILES["gl"], {"color": drawn.color}).wrong.any()
+        found = judged(given, drawn(port, replace(given, params=wider)), "gl")
+        vertex = found["vertex"]
+        assert {vertex.arrays[i] for i in vertex.blame[vertex.wrong]} == {"vertex.width"}
+    assert found["image"].wrong.any()
 
 
 def test_what_is_not_ported_is_refused(port: Port) -> None:
-    described = scene()
+    given = case(scene(), law())
     with pytest.raises(ValueError, match="primitive = 'hexagons'"):
-        port.prepare(described, law(), primitive="hexagons")
+        drawn(port, given, primitive="hexagons")
+    wide = splatting.Params(alpha=1.0, beta=0.0, gamma=0.0, delta=1.0, max_width=1e5)
     with pytest.raises(ValueError, match=r"max_width = 100000\.0"):
-        port.prepare(described, splatting.Params(alpha=1.0, beta=0.0, gamma=0.0, delta=1.0, max_width=1e5))
-    image = reference("perspective", (3.0, 0.0, 0.5))
-    grey = ibr_ref.DepthImage(color=np.full((22, 30, 3), 0.3333), depth=image.depth, camera=image.camera)
-    with pytest.raises(ValueError, match=r"images\[0\]\.color"):
-        port.prepare(splatting.Scene(images=[grey], camera=image.camera, light=None), law())
+        drawn(port, replace(given, params=wide), primitive="points")
