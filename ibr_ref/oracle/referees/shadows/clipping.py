@@ -8,7 +8,7 @@ that a corner may slide is only told where the new edge, along the plane, can be
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +75,9 @@ def clipped(numbers: Sequence[Bounded], triangles: NDArray[np.integer], names: I
         polygon = [Corner(value[t, i], error[t, i], still, int(names[triangles[t, i]])) for i in range(3)]
         for plane in (0, 1):
             polygon = _cut(polygon, plane, fresh, device)
-        wild |= _slides_into_view(polygon, width, height, device)
+        if _slides_into_view(polygon, width, height, device):
+            polygon = [replace(c, error=c.error + c.slide, slide=still) for c in polygon]
+            wild |= not all(np.isfinite(c.error).all() for c in polygon)
         pieces += [(int(t), fan) for fan in _fan(polygon)]
     source = np.concatenate([np.flatnonzero(whole), np.array([t for t, _ in pieces], np.int64)])
     order = np.argsort(source, kind="stable")
