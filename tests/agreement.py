@@ -54,9 +54,9 @@ def check_agreement(method: ModuleType, twin: ModuleType, scene: Any, params: An
     return frame
 
 
-def check_without_stages(method: ModuleType, scene: Any, params: Any, frame: Frame) -> None:
+def check_without_stages(method: ModuleType, scene: Any, params: Any, frame: Frame, **options: Any) -> None:
     """The same picture and depth come out where no stages are kept."""
-    bare = method.render(scene, params, stages=False)
+    bare = method.render(scene, params, stages=False, **options)
     assert bare.stages == {}
     ours = {"color": bare.color, "depth": bare.depth}
     assert not (report := differences(ours, {"color": frame.color, "depth": frame.depth})), f"stages=False: {report}"

@@ -115,12 +115,14 @@ def _with_camera(case: Case, intrinsics: NDArray[np.float64], rotation: NDArray[
 def _linear(color: NDArray[np.float64], handed: Handed) -> Image:
     """IEC 61966-2-1: encoded to linear."""
     c = np.clip(color, 0.0, 1.0)
+    # The standard's own constants.
     return _as_handed(np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4), handed)
 
 
 def _encoded(color: NDArray[np.float64], handed: Handed) -> Image:
     """IEC 61966-2-1: linear to encoded."""
     c = np.clip(color, 0.0, 1.0)
+    # The standard's own constants.
     return _as_handed(np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1.0 / 2.4) - 0.055), handed)
 
 

@@ -58,9 +58,7 @@ class Device:
         return 2.0**-self.subpixel_bits if self.subpixel_any else 0.0
 
 
-_OPENGL = (
-    "OpenGL 4.6, 2.3.4: results are accurate to about 1 part in 10^5; GLSL 4.60, 4.7.1 is tighter for precise code"
-)
+_OPENGL = "OpenGL 4.6, Floating-Point Computation: accurate to about 1 part in 10^5 (GLSL 4.60 is tighter)"
 _VULKAN = 'Vulkan 1.3, appendix "Precision and Operation of SPIR-V Instructions"'
 _WGSL = "WGSL, section 15.7.4 (accuracy of concrete floating point expressions)"
 _D3D = "Direct3D 11.3 functional specification"
@@ -108,17 +106,17 @@ D3D11 = Device(
     depth_step=2.0**-24,
     byte=0.6,
     sources={
-        "operation": f"{_D3D}, 3.1.2: add, sub, mul within 1 ULP of the infinitely precise result",
-        "quotient": f"{_D3D}, 3.1.2 and 22.10: div within 1 ULP",
-        "root": f"{_D3D}, 22.10: sqrt within 1 ULP",
-        "weight_step": f"{_D3D}, 7.18.8 and 3.2.4.1: 8 fractional bits of filter weights",
-        "subpixel_bits": f"{_D3D}, 3.4.1 and 15.4: 16.8 fixed point window positions",
-        "subpixel_any": f"{_D3D}, 3.2.4.1: conversion to fixed point within 0.6 ULP of the target",
-        "unsnapped": f"{_D3D}, 15.4: vertices are snapped before the triangle is set up",
+        "operation": "Microsoft, Floating-point rules (Direct3D 11): +, -, * may be truncated, within 1 ULP",
+        "quotient": f"{_D3D}, floating point rules: division within 1 ULP",
+        "root": f"{_D3D}, floating point rules: square root within 1 ULP",
+        "weight_step": f"{_D3D}, texture addressing: 8 fractional bits of filter weights",
+        "subpixel_bits": f"{_D3D}, rasterizer: 16.8 fixed point window positions",
+        "subpixel_any": f"{_D3D}, conversion to fixed point: within 0.6 ULP of the target",
+        "unsnapped": f"{_D3D}, rasterizer: vertices are snapped before the triangle is set up",
         "splat_border": f"{_D3D}, 3.2.4.1: a quad's corners within 0.6 steps; {_CENTRE}",
         "minus_one": f"{_D3D}, clipping: 0 <= z <= w",
-        "depth_step": f"{_D3D}, 17.7: D24_UNORM",
-        "byte": f"{_D3D}, 3.2.3.6: float to UNORM within 0.6 ULP",
+        "depth_step": f"{_D3D}, formats: D24_UNORM_S8_UINT",
+        "byte": f"{_D3D}, conversion of floats to UNORM: within 0.6 ULP",
     },
 )
 
@@ -141,12 +139,12 @@ VULKAN = Device(
         "root": f"{_VULKAN}: sqrt inherited from 1.0 / inversesqrt, 2 ULP and 2.5 ULP",
         "weight_step": "Vulkan 1.3, limits: subTexelPrecisionBits, 8 on desktop implementations (at least 4)",
         "subpixel_bits": "Vulkan 1.3, limits: subPixelPrecisionBits, 8 on desktop implementations (at least 4)",
-        "subpixel_any": "Vulkan 1.3, 28.7: the rounding to subPixelPrecisionBits is not specified",
-        "unsnapped": "Vulkan 1.3, 28.9.1: interpolation by the areas of the rasterized polygon",
-        "splat_border": f"Vulkan 1.3, 28.7: a quad's corners at either neighbour on the raster; {_CENTRE}",
+        "subpixel_any": "Vulkan 1.3, Rasterization: the rounding to subPixelPrecisionBits is not specified",
+        "unsnapped": "Vulkan 1.3, Basic Polygon Rasterization: interpolation by the areas of the rasterized polygon",
+        "splat_border": f"Vulkan 1.3, Rasterization: a quad's corners at either neighbour on the raster; {_CENTRE}",
         "minus_one": "Vulkan 1.3, Primitive Clipping: 0 <= z <= w",
-        "depth_step": "Vulkan 1.3, 34.5: VK_FORMAT_D24_UNORM_S8_UINT, X8_D24",
-        "byte": "Vulkan 1.3, 3.7.4: conversion to fixed point may give either neighbour (the nearest is preferred)",
+        "depth_step": "Vulkan 1.3, Formats: VK_FORMAT_D24_UNORM_S8_UINT, X8_D24",
+        "byte": "Vulkan 1.3, Fixed-Point Data Conversions: they may give either neighbour (the nearest is preferred)",
     },
 )
 
@@ -169,11 +167,11 @@ WEBGPU = Device(
         "root": f"{_WGSL}: sqrt inherited from 1.0 / inverseSqrt, 2 ULP and 2.5 ULP",
         "weight_step": "WebGPU leaves filtering to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan",
         "subpixel_bits": "WebGPU leaves it to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan",
-        "subpixel_any": "WebGPU, 23.2.4: rasterization gives no rounding of positions",
-        "unsnapped": "WebGPU, 23.2.5: interpolation by barycentric coordinates, the positions' precision not said",
-        "splat_border": f"WebGPU, 23.2.4: a quad's corners as any positions; {_CENTRE}",
-        "minus_one": "WebGPU, 3.3 (coordinate systems): 0 <= z <= w",
-        "depth_step": "WebGPU, 26.1.1: depth24plus may have 24 bits unorm",
+        "subpixel_any": "WebGPU, Rasterization: gives no rounding of positions",
+        "unsnapped": "WebGPU, Rasterization: interpolation by barycentric coordinates, the positions' precision not said",
+        "splat_border": f"WebGPU, Rasterization: a quad's corners as any positions; {_CENTRE}",
+        "minus_one": "WebGPU, Coordinate Systems: 0 <= z <= w",
+        "depth_step": "WebGPU, Texture Format Capabilities: depth24plus may have 24 bits unorm",
         "byte": "WebGPU leaves conversion to the API below: either neighbour",
     },
 )
@@ -195,14 +193,14 @@ GL = Device(
         "operation": f"{_OPENGL}; taken here as a rounding and 2 ULP",
         "quotient": f"{_OPENGL}; taken here as a reciprocal and a product, each a rounding and 2 ULP",
         "root": f"{_OPENGL}; taken here as an inverse root and a reciprocal, each a rounding and 2 ULP",
-        "weight_step": "OpenGL 4.6, 8.14.2 gives no precision of weights; 8 bits on desktop implementations",
-        "subpixel_bits": "OpenGL 4.6, table 23.64: SUBPIXEL_BITS at least 4, 8 on desktop implementations",
-        "subpixel_any": "OpenGL 4.6, 14.6.1: the rounding of window positions is not specified",
-        "unsnapped": "OpenGL 4.6, 14.6.1: interpolation by areas of the triangle, whether snapped is not said",
-        "splat_border": f"OpenGL 4.6, 14.4: a sprite's size has a granularity, here 1/256; quads: {_CENTRE}",
-        "minus_one": "OpenGL 4.6, 13.7: -w <= z <= w, the initial clip control",
-        "depth_step": "OpenGL 4.6, 13.8.1: window depth may be fixed point; DEPTH_COMPONENT24",
-        "byte": "OpenGL 4.6, 2.3.5.2: conversion to unsigned normalized may give either neighbour",
+        "weight_step": "OpenGL 4.6, Texture Minification, gives no precision of weights; 8 bits on desktop implementations",
+        "subpixel_bits": "OpenGL 4.6, Implementation Dependent Values: SUBPIXEL_BITS at least 4, 8 on desktops",
+        "subpixel_any": "OpenGL 4.6, Basic Polygon Rasterization: the rounding of window positions is not specified",
+        "unsnapped": "OpenGL 4.6, Basic Polygon Rasterization: by areas of the triangle, snapped or not is not said",
+        "splat_border": f"OpenGL 4.6, Points: a sprite's size has a granularity, here 1/256; quads: {_CENTRE}",
+        "minus_one": "OpenGL 4.6, Primitive Clipping: -w <= z <= w, the initial clip control",
+        "depth_step": "OpenGL 4.6, Coordinate Transformations: window depth may be fixed point; DEPTH_COMPONENT24",
+        "byte": "OpenGL 4.6, Conversion from Floating-Point to Normalized Fixed-Point: either neighbour",
     },
 )
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.pipeline.triangles import SUBPIXELS
-from ibr_ref.shadows.warp import grid_triangles
+from ibr_ref.shadows.draw import grid_triangles
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange
-from ibr_ref.shadows.warp import grid_triangles
+from ibr_ref.shadows.draw import grid_triangles
 
 Array = NDArray[np.float64]
 

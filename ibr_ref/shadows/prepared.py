@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import zipfile
 from dataclasses import dataclass
+from functools import cached_property
 from io import BytesIO
 from os import PathLike
 from typing import Any
@@ -18,6 +19,8 @@ from ibr_ref.shadows import automatic, maps
 from ibr_ref.shadows import controls as placement
 from ibr_ref.shadows.inputs import CONTENTS, LARGEST_MAP, MOST_CONTROLS, Params, Scene
 from ibr_ref.shadows.samples import caster_at, check_outside, samples_of, widened_range
+from ibr_ref.shadows.spans import spans
+from ibr_ref.shadows.warp import Nine
 
 Array = NDArray[np.float64]
 
@@ -82,6 +85,12 @@ class Maps:
     def image(self) -> Array:
         """(3, 3, S, S) the maps as numbers from 0 to 1."""
         return maps.values(self.texels, self.samples)
+
+    @cached_property
+    def nine(self) -> Nine:
+        """The maps as they are warped."""
+        outside = 0.0 if self.content == "mask" else 1.0
+        return Nine(self.texels, self.levels, spans(self.texels, self.levels, outside), self.controls, outside)
 
     @property
     def nbytes(self) -> int:

@@ -129,13 +129,12 @@ def _check_range(scene: Scene, samples: Sequence[Sample], ends: Array) -> None:
 def _warped(
     scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps, stages: bool
 ) -> tuple[list[Array], dict[str, Any]]:
-    outside = 0.0 if params.content == "mask" else 1.0
     warps = []
     for i, sample in enumerate(samples):
         cell, fraction = locate(maps.positions, seen_offset(scene, sample))
         _check_grids(maps.controls, cell, fraction, i)
         nearest = params.policy == "nearest"
-        warps.append(warp_stage(maps.texels, maps.levels, maps.controls, cell, fraction, nearest, outside))
+        warps.append(warp_stage(maps.nine, cell, fraction, nearest))
     images = [w.image for w in warps]
     if not stages:
         return images, {}

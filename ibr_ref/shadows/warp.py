@@ -1,13 +1,4 @@
-"""Stage warp: the map for a place of the object, between the nine prepared ones (sections 3.2.1 and 3.2.2).
-
-One warp of an image from the grid G to the grid G' draws, for each cell of the grid row by row, the triangles
-(r,c), (r,c+1), (r+1,c+1) and (r,c), (r+1,c+1), (r+1,c) with corners at G' and texture coordinates G: what is drawn
-later overwrites. Coverage is that of all triangles here: S G' snapped to 1/256 texel, exact integer edge functions,
-top-left rule, both orientations. Attributes come from the same snapped corners: with l_i = E_i / (E_0 + E_1 + E_2), a
-texture coordinate is (l_0 a_0 + l_1 a_1) + l_2 a_2. Fetches are bilinear, with clamp.
-
-Two images that are warped to the same grid and mixed are drawn together: one rasterization, two fetches.
-"""
+"""Stage warp: the map for a place of the object, between the nine prepared ones (section 3.2.2)."""
 
 from __future__ import annotations
 
@@ -16,37 +7,28 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
-from ibr_ref.pipeline.sampling import footprint, lerp
-from ibr_ref.pipeline.triangles import SUBPIXELS, columns_in_row, edges_in_row
+from ibr_ref.shadows.draw import Image, draw
 
 Array = NDArray[np.float64]
 
-BAND_ROWS = 8
-"""Rows of the map that a thread draws at a time."""
 
-
-class Image(NamedTuple):
-    """A square image to fetch from, and its control points."""
+class Nine(NamedTuple):
+    """The nine maps."""
 
     texels: NDArray[np.generic]
-    """(S S) flat: bytes, or float64 where `levels` is None."""
+    """(3, 3, S, S): bytes, or float64 where `levels` is None."""
     levels: Array | None
-    """(256,) the values of the bytes; None: the texels are the values."""
-    grid: Array
-    """(R, C, 2) control points (u, v) in [0, 1]^2."""
+    spans: NDArray[np.int32]
+    """(3, 3, S, 2) where they may differ from `outside`."""
+    controls: Array
+    """(3, 3, R, C, 2)."""
+    outside: float
+    """What is beside the caster: 0 or 1."""
 
-
-class Mesh(NamedTuple):
-    """Where a grid's triangles are in the window of a map."""
-
-    x: NDArray[np.int64]
-    """(T, 3) in 1/256 texel."""
-    y: NDArray[np.int64]
-    """(T, 3)."""
-    rows: NDArray[np.int64]
-    """(T, 2) first and last row that the triangle may cover."""
+    def image(self, j: int, i: int) -> Image:
+        """The one at the positions' [j, i]."""
+        return Image(self.texels[j, i].reshape(-1), self.levels, self.spans[j, i], self.controls[j, i])
 
 
 class Warped(NamedTuple):
@@ -64,119 +46,6 @@ class Warped(NamedTuple):
     """(R, C, 2) lerp of the row grids by t."""
     image: Array
     """(S, S)."""
-
-
-# --- One warp --------------------------------------------------------------------------------------------------------
-
-
-def grid_triangles(grid: Array) -> Array:
-    """(2 (R-1) (C-1), 3, 2) corners of a grid's triangles, in the order in which they are drawn."""
-    a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
-    return np.stack([a, b, c, a, c, d], axis=2).reshape(-1, 3, 2)
-
-
-@device
-def _interpolate(edges, first, corners, u, v):
-    """Texture coordinates of the columns from `first`, for a triangle with those of `corners` (3, 2).
-
-    The edge functions as floats are exact: integers below 2^53.
-    """
-    total = np.float64(edges.e0 + edges.e1 + edges.e2)
-    e0, step0 = np.float64(edges.e0 + edges.step0 * first), np.float64(edges.step0)
-    e1, step1 = np.float64(edges.e1 + edges.step1 * first), np.float64(edges.step1)
-    e2, step2 = np.float64(edges.e2 + edges.step2 * first), np.float64(edges.step2)
-    u0, u1, u2 = corners[0, 0], corners[1, 0], corners[2, 0]
-    v0, v1, v2 = corners[0, 1], corners[1, 1], corners[2, 1]
-    for i in range(len(u)):
-        column = np.float64(np.int32(i))
-        l0 = (e0 + step0 * column) / total
-        l1 = (e1 + step1 * column) / total
-        l2 = (e2 + step2 * column) / total
-        u[i] = l0 * u0 + l1 * u1 + l2 * u2
-        v[i] = l0 * v0 + l1 * v1 + l2 * v2
-
-
-@device
-def _rasterize(mesh, corners, other_corners, row, uv, other_uv):
-    """Texture coordinates of a row of the map: of all triangles, in order; NaN where none is."""
-    uv[:] = np.nan
-    for t in range(len(mesh.rows)):
-        if mesh.rows[t, 0] <= row <= mesh.rows[t, 1]:
-            edges = edges_in_row(mesh.x[t], mesh.y[t], row)
-            if edges.e0 + edges.e1 + edges.e2 != 0:  # a triangle without an area covers nothing
-                first, stop = columns_in_row(edges, uv.shape[1])
-                _interpolate(edges, first, corners[t], uv[0, first:stop], uv[1, first:stop])
-                if other_corners is not None:
-                    other = other_corners[t]
-                    _interpolate(edges, first, other, other_uv[0, first:stop], other_uv[1, first:stop])
-
-
-@device
-def _texel(texels, levels, i):
-    return texels[i] if levels is None else levels[texels[i]]
-
-
-@device
-def _fetch(texels, levels, uv, index, fraction, out):
-    """A row of bilinear fetches, in two loops: with the gathers in the first one too, it is not vectorized."""
-    size = np.float64(len(out))
-    for i in range(len(out)):
-        i00, i10, i01, i11, fx, fy = footprint(uv[0, i], uv[1, i], size, size, None)
-        index[0, i], index[1, i], index[2, i], index[3, i] = i00, i10, i01, i11
-        fraction[0, i], fraction[1, i] = fx, fy
-    for i in range(len(out)):
-        top = lerp(_texel(texels, levels, index[0, i]), _texel(texels, levels, index[1, i]), fraction[0, i])
-        bottom = lerp(_texel(texels, levels, index[2, i]), _texel(texels, levels, index[3, i]), fraction[0, i])
-        out[i] = lerp(top, bottom, fraction[1, i])
-
-
-@device
-def _draw_band(texels, levels, corners, other, other_corners, share, mesh, outside, first_row, last_row, out):
-    size = out.shape[1]
-    uv, other_uv, spare = np.empty((2, size)), np.empty((2, size)), np.empty(size)
-    index, fraction = np.empty((4, size), np.uint32), np.empty((2, size))
-    for row in range(first_row, last_row):
-        _rasterize(mesh, corners, other_corners, row, uv, other_uv)
-        _fetch(texels, levels, uv, index, fraction, out[row])
-        if other is not None:
-            _fetch(other, levels, other_uv, index, fraction, spare)
-            for i in range(size):
-                out[row, i] = lerp(out[row, i], spare[i], share)
-        for i in range(size):
-            out[row, i] = outside if np.isnan(uv[0, i]) else out[row, i]
-
-
-@kernel
-def _draw(texels, levels, corners, other, other_corners, share, mesh, outside, out):
-    """Warp an image to a mesh. other: None, or a second image of the same type, of which `share` is mixed in."""
-    size = len(out)
-    for band in prange((size + BAND_ROWS - 1) // BAND_ROWS):
-        first_row = band * BAND_ROWS
-        last_row = min(size, first_row + BAND_ROWS)
-        _draw_band(texels, levels, corners, other, other_corners, share, mesh, outside, first_row, last_row, out)
-
-
-def _mesh(target: Array, size: int) -> Mesh:
-    """The triangles of a grid in the window of an S x S map, snapped."""
-    window = np.rint(grid_triangles(target) * size * SUBPIXELS).astype(np.int64)
-    x, y = np.ascontiguousarray(window[..., 0]), np.ascontiguousarray(window[..., 1])
-    return Mesh(x, y, np.stack([y.min(axis=1), y.max(axis=1)], axis=1) // SUBPIXELS)
-
-
-def warp(image: Image, target: Array, outside: float, out: Array) -> None:
-    """Warp an image from its grid to the grid `target`, into out (S, S); `outside` where no triangle is."""
-    mesh = _mesh(target, len(out))
-    _draw(image.texels, image.levels, grid_triangles(image.grid), None, None, 0.0, mesh, outside, out)
-
-
-def warp_and_mix(first: Image, second: Image, share: float, target: Array, outside: float, out: Array) -> None:
-    """Warp two images to the grid `target` and mix them: 1 - share of the first, share of the second."""
-    mesh = _mesh(target, len(out))
-    corners, other = grid_triangles(first.grid), grid_triangles(second.grid)
-    _draw(first.texels, first.levels, corners, second.texels, other, share, mesh, outside, out)
-
-
-# --- The stage -------------------------------------------------------------------------------------------------------
 
 
 def locate(positions: Array, offset: Array) -> tuple[NDArray[np.int32], Array]:
@@ -199,34 +68,29 @@ def grids_at(controls: Array, cell: NDArray[np.int32], fraction: Array) -> tuple
     return rows, between(rows[0], rows[1], t)
 
 
-def warp_stage(
-    texels: NDArray[np.generic],
-    levels: Array | None,
-    controls: Array,
-    cell: NDArray[np.int32],
-    fraction: Array,
-    nearest: bool,
-    outside: float,
-) -> Warped:
-    """The map for a place within a cell, from texels (3, 3, S, S).
+def warp_stage(nine: Nine, cell: NDArray[np.int32], fraction: Array, nearest: bool) -> Warped:
+    """The map for a place within a cell.
 
     nearest: each of the three warps takes the nearer image alone (section 3.2.2 speaks of three warps, as in bilinear
     interpolation); otherwise each mixes two, warped to one grid: six warps.
     """
-    size = texels.shape[2]
+    size = nine.texels.shape[2]
     (i, j), (s, t) = cell.tolist(), fraction.tolist()
-    row_grids, grid = grids_at(controls, cell, fraction)
+    row_grids, grid = grids_at(nine.controls, cell, fraction)
     rows, image = memory.arrays([(np.float64, (2, size, size)), (np.float64, (size, size))])
+    pair = []
     for k in range(2):
-        pair = [Image(texels[j + k, i + n].reshape(-1), levels, controls[j + k, i + n]) for n in range(2)]
-        _warp_pair(pair, s, row_grids[k], nearest, outside, rows[k])
-    pair = [Image(rows[k].reshape(-1), None, row_grids[k]) for k in range(2)]
-    _warp_pair(pair, t, grid, nearest, outside, image)
+        first, second = nine.image(j + k, i), nine.image(j + k, i + 1)
+        drawn = _warp_pair(first, second, s, row_grids[k], nearest, nine.outside, rows[k])
+        pair.append(Image(rows[k].reshape(-1), None, drawn, row_grids[k]))
+    _warp_pair(pair[0], pair[1], t, grid, nearest, nine.outside, image)
     return Warped(cell, fraction, row_grids, rows, grid, image)
 
 
-def _warp_pair(pair: list[Image], share: float, target: Array, nearest: bool, outside: float, out: Array) -> None:
+def _warp_pair(
+    first: Image, second: Image, share: float, target: Array, nearest: bool, outside: float, out: Array
+) -> NDArray[np.int32]:
+    """Warp both and mix, or the nearer alone. Gives the spans of what is drawn."""
     if nearest:
-        warp(pair[0] if share < 0.5 else pair[1], target, outside, out)
-    else:
-        warp_and_mix(pair[0], pair[1], share, target, outside, out)
+        return draw(first if share < 0.5 else second, None, 0.0, target, outside, out)
+    return draw(first, second, share, target, outside, out)

@@ -119,7 +119,7 @@ def package_maps(scene: shadows.Scene, params: shadows.Params, maps: shadows.Map
         else:
             cell, fraction = locate(maps.positions, seen_offset(scene, sample))
             nearest = params.policy == "nearest"
-            warped = warp_stage(maps.texels, maps.levels, maps.controls, cell, fraction, nearest, 0.0)
+            warped = warp_stage(maps.nine, cell, fraction, nearest)
             images.append(warped.image)
     return images
 

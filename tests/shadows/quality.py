@@ -1,18 +1,22 @@
 """How near warped shadows come to rendered ones: `python -m tests.shadows.quality` prints the whole table (half an hour).
+`--soft` prints how near few light samples come to the area light instead (ten minutes).
 
 Every object stands on `models.shadow_stage`. Maps: intersection over union at >= 0.5 of the warped and the rendered map,
 mean and worst of 64 random offsets. Soft shadows: mean absolute difference, where either is > 0, of the shadow in the
-picture for nine light samples, 8 offsets. The cow and the teapot are read from ../shared/data beside the repository.
+picture for nine light samples, 8 offsets. Area light: the same difference in pictures of 320 x 240, 4 offsets, to rendered
+maps of 64 x 64 samples. The cow and the teapot are read from ../shared/data beside the repository.
 """
 
 from __future__ import annotations
 
+import argparse
 import itertools
 import time
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ibr_ref import io, models
 from ibr_ref.cli.shadow_quality import iou, soft_difference
@@ -21,6 +25,14 @@ from ibr_ref.shadows import MapGrid, Maps, Params, Scene, prepare, prepare_grid,
 
 DATA = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "models"
 OFFSETS, SOFT_OFFSETS = 64, 8
+AREA_OFFSETS, AREA_CELLS = 4, 64
+COUNTS = (1, 5, 9, 64, 1024)
+"""Light samples that are compared with the area light."""
+
+_BATCH = 64
+"""Light samples of a frame: its stages are kept of each."""
+
+Array = NDArray[np.float64]
 
 
 def cow() -> Mesh:
@@ -38,9 +50,9 @@ def teapot() -> Mesh:
 OBJECTS = {"cow": cow, "teapot": teapot, "chair": models.chair}
 
 
-def stages(name: str, count: int) -> list[Scene]:
+def stages(name: str, count: int, width: int = 640, height: int = 480) -> list[Scene]:
     """The object on its stage, at `count` random offsets."""
-    scene = models.shadow_stage(OBJECTS[name]())
+    scene = models.shadow_stage(OBJECTS[name](), width=width, height=height)
     low, high = np.asarray(scene.offset_range).T
     return [replace(scene, offset=o) for o in np.random.RandomState(64).uniform(low, high, (count, 2))]
 
@@ -55,11 +67,32 @@ def map_quality(scenes: list[Scene], params: Params, maps: Maps | MapGrid | None
 def soft_quality(scenes: list[Scene], params: Params, maps: Maps | MapGrid | None) -> float:
     """Mean difference of the shadow in the picture from that of rendered maps, the same light samples; of all scenes."""
     rendered = replace(params, method="direct")
-    name = "accumulate.shadow"
-    found = [
-        soft_difference(render(s, params, maps=maps).stages[name], render(s, rendered).stages[name]) for s in scenes
-    ]
+    found = [soft_difference(soft_shadow(s, params, maps), soft_shadow(s, rendered)) for s in scenes]
     return float(np.mean(found))
+
+
+def soft_shadow(
+    scene: Scene, params: Params, maps: Maps | MapGrid | None = None, samples: int | Array | None = None
+) -> Array:
+    """(H, W) the shadow in the picture. samples: any number of light samples, not those of params."""
+    if not isinstance(samples, np.ndarray):
+        params = params if samples is None else replace(params, light_samples=samples)
+        return np.asarray(render(scene, params, maps=maps).stages["accumulate.shadow"])
+    total = np.zeros((scene.camera.height, scene.camera.width))
+    for first in range(0, len(samples), _BATCH):
+        batch = samples[first : first + _BATCH]
+        total += len(batch) * soft_shadow(scene, replace(params, light_samples=batch), maps)
+    return total / len(samples)
+
+
+def light_samples(scene: Scene, count: int) -> int | Array:
+    """1, 5 and 9 as they are; otherwise the centres (n n, 3) of n x n cells of the light, n n = count."""
+    if count in (1, 5, 9):
+        return count
+    centre, (a, b) = scene.light.arrays
+    n = round(count**0.5)
+    steps = (2 * np.arange(n) + 1) / n - 1
+    return np.array([centre + u * a + v * b for v in steps for u in steps])
 
 
 def _show(*columns: str) -> None:
@@ -99,8 +132,32 @@ def _warp(name: str, size: int, quality: str, columns: int, samples: int) -> Non
         _show(name, str(size), what, f"{mean:.4f} {worst:.4f}", soft, seconds)
 
 
+def _soft(name: str, size: int) -> None:
+    """Few light samples, rendered and warped, against many rendered ones; and warped against the same rendered ones."""
+    scenes = stages(name, AREA_OFFSETS, 320, 240)
+    rendered = Params(map_size=size, method="direct")
+    limits = [soft_shadow(s, rendered, samples=light_samples(s, AREA_CELLS**2)) for s in scenes]
+    for count in COUNTS:
+        samples = light_samples(scenes[0], count)
+        warped = Params(map_size=size, light_samples=samples)
+        maps = prepare(scenes[0], warped, controls="best")
+        direct = [soft_shadow(s, rendered, samples=samples) for s in scenes]
+        ours = [soft_shadow(s, warped, maps, samples) for s in scenes]
+        pairs = (direct, limits), (ours, direct), (ours, limits)
+        means = [np.mean([soft_difference(a, b) for a, b in zip(*pair, strict=True)]) for pair in pairs]
+        print(f"{name:<8} {size:<6} {count:<9}" + "".join(f"{mean:<22.4f}" for mean in means), flush=True)
+
+
 def main() -> None:
-    """Print the table."""
+    """Print a table."""
+    parser = argparse.ArgumentParser(prog="python -m tests.shadows.quality", description=__doc__)
+    parser.add_argument("--soft", action="store_true", help="few light samples against the area light")
+    if parser.parse_args().soft:
+        titles = ("rendered to the limit", "warped to rendered", "warped to the limit")
+        print(f"{'object':<8} {'size':<6} {'samples':<9}" + "".join(f"{title:<22}" for title in titles))
+        for name in OBJECTS:
+            _soft(name, 256)
+        return
     _show("object", "size", "way", "IoU mean worst", "soft", "prepared")
     for name, size in itertools.product(OBJECTS, (128, 256, 512)):
         _compare(name, size)

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from ibr_ref.scene import AreaLight
 from ibr_ref.shadows import maps, warp
+from ibr_ref.shadows.draw import Image, draw
+from ibr_ref.shadows.spans import spans
 from tests.naive import shadow_light, shadow_maps
 from tests.naive import warp as twin
 from tests.shadows.plates import example, moved_controls, parameters, regular_grid
@@ -108,39 +110,67 @@ def naive_warp(image: Array, source: Array, target: Array, content: str) -> Arra
     return twin.warp_image(image, twin.plain_grid(source), twin.plain_grid(target), content)
 
 
-def warped(image: NDArray[Any], source: Array, target: Array, outside: float) -> Array:
-    out = np.empty(image.shape)
+def source_of(image: NDArray[Any], grid: Array, outside: float) -> Image:
     levels = LEVELS if image.dtype == np.uint8 else None
-    warp.warp(warp.Image(image.reshape(-1), levels, source), target, outside, out)
+    return Image(image.reshape(-1), levels, spans(image, levels, outside), grid)
+
+
+def warped(image: NDArray[Any], source: Array, target: Array, outside: float) -> Array:
+    """Also checks that what is drawn beside its spans is blank."""
+    out = np.empty(image.shape)
+    first, stop = draw(source_of(image, source, outside), None, 0.0, target, outside, out).T[..., None]
+    columns = np.arange(len(out))
+    assert (out[(columns < first) | (columns >= stop)] == outside).all()
     return out
 
 
 sizes = st.tuples(st.integers(2, 6), st.integers(2, 6))
 
 
+def drawn_image(random: np.random.RandomState, size: int, depth: bool, boxes: float) -> NDArray[Any]:
+    """Random texels, where they are not blank: in a few boxes of up to this share of the side; 0: everywhere."""
+    image = random.random_sample((size, size)) if depth else random.randint(0, 16, (size, size)).astype(np.uint8)
+    if boxes == 0.0:
+        return image
+    solid = np.zeros((size, size), bool)
+    for top, left in random.randint(0, size, (random.randint(0, 4), 2)):
+        height, width = random.randint(1, 2 + int(boxes * size), 2)
+        solid[top : top + height, left : left + width] = True
+    return np.where(solid, image, np.array(depth, image.dtype))
+
+
 @derandomized
-@given(st.integers(0, 1000), st.integers(8, 40), sizes, st.booleans(), st.sampled_from([0.05, 0.5]))
-def test_a_warp_is_the_twins(seed: int, size: int, shape: tuple[int, int], depth: bool, force: float) -> None:
-    """Also of grids that fold, and whose border leaves that of the map."""
+@given(
+    st.integers(0, 10000),
+    st.integers(8, 40),
+    sizes,
+    st.booleans(),
+    st.sampled_from([0.05, 0.2, 0.5]),
+    st.sampled_from([0.0, 0.1, 0.4]),
+)
+def test_a_warp_is_the_twins(
+    seed: int, size: int, shape: tuple[int, int], depth: bool, force: float, boxes: float
+) -> None:
+    """Also of maps that are blank in part, of grids that fold, and whose border leaves that of the map."""
     random = np.random.RandomState(seed)
     source, target = (
         np.clip(regular_grid(*shape) + random.uniform(-force, force, (*shape, 2)), 0.0, 1.0) for _ in range(2)
     )
-    image = random.random_sample((size, size)) if depth else random.randint(0, 16, (size, size)).astype(np.uint8)
+    image = drawn_image(random, size, depth, boxes)
     ours = warped(image, source, target, float(depth))
     theirs = naive_warp(image.astype(np.float64), source, target, "depth" if depth else "mask")
     assert np.array_equal(ours, theirs)
 
 
 @derandomized
-@given(st.integers(0, 1000), st.floats(0.0, 1.0))
-def test_two_images_are_warped_as_one_by_one_and_mixed(seed: int, share: float) -> None:
+@given(st.integers(0, 1000), st.floats(0.0, 1.0), st.sampled_from([0.0, 0.2]))
+def test_two_images_are_warped_as_one_by_one_and_mixed(seed: int, share: float, boxes: float) -> None:
     random = np.random.RandomState(seed)
-    images = [random.random_sample((24, 24)) for _ in range(2)]
+    images = [drawn_image(random, 24, True, boxes) for _ in range(2)]
     first, second, target = moved_controls(seed)[0]
     both = np.empty((24, 24))
-    sources = [warp.Image(i.reshape(-1), None, g) for i, g in zip(images, (first, second), strict=True)]
-    warp.warp_and_mix(*sources, share, target, 1.0, both)
+    sources = [source_of(i, g, 1.0) for i, g in zip(images, (first, second), strict=True)]
+    draw(*sources, share, target, 1.0, both)
     one, other = (warped(i, g, target, 1.0) for i, g in zip(images, (first, second), strict=True))
     assert np.array_equal(both, one * (1.0 - share) + other * share)
 
@@ -157,17 +187,23 @@ def test_the_regular_grid_leaves_the_image(shape: tuple[int, int]) -> None:
 
 
 @derandomized
-@given(st.integers(0, 1000), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.booleans(), st.booleans())
-def test_the_stage_is_the_twins(seed: int, x: float, y: float, nearest: bool, bytes_: bool) -> None:
+@given(
+    st.integers(0, 1000),
+    st.floats(-1.0, 1.0),
+    st.floats(-1.0, 1.0),
+    st.booleans(),
+    st.booleans(),
+    st.sampled_from([0.0, 0.2, 0.5]),
+)
+def test_the_stage_is_the_twins(seed: int, x: float, y: float, nearest: bool, depth: bool, boxes: float) -> None:
     positions = maps.positions(np.array([-1.0, -1.0]), np.array([1.0, 1.0]), np.array([0.3, 0.0]))
     random = np.random.RandomState(seed)
-    images = random.randint(0, 5, (3, 3, 16, 16)).astype(np.uint8) if bytes_ else random.random_sample((3, 3, 16, 16))
-    levels = np.arange(256) / 4.0 if bytes_ else None
+    images = np.stack([drawn_image(random, 20, depth, boxes) for _ in range(9)]).reshape(3, 3, 20, 20)
+    levels = None if depth else np.arange(256) / 16.0
     controls = moved_controls(seed)
-    ours = warp.warp_stage(
-        images, levels, controls, *warp.locate(positions, np.array([x, y])), nearest, 0.0 if bytes_ else 1.0
-    )
-    params = parameters(policy="nearest" if nearest else "dissolve", content="mask" if bytes_ else "depth")
-    theirs = twin.warped_map((x, y), positions, images / 4.0 if bytes_ else images, controls, params)
+    nine = warp.Nine(images, levels, spans(images, levels, float(depth)), controls, float(depth))
+    ours = warp.warp_stage(nine, *warp.locate(positions, np.array([x, y])), nearest)
+    params = parameters(policy="nearest" if nearest else "dissolve", content="depth" if depth else "mask")
+    theirs = twin.warped_map((x, y), positions, images if depth else images / 16.0, controls, params)
     for name in theirs._fields:
         assert np.array_equal(getattr(ours, name), getattr(theirs, name)), name

@@ -1,4 +1,4 @@
-"""The package agrees with the naive twin bit for bit, on drawn scenes."""
+"""The package agrees with the naive twin bit for bit: on drawn scenes, and on the chair."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from ibr_ref import shadows
+from ibr_ref import models
 from ibr_ref.io import Frame
+from ibr_ref.shadows import Params, prepare
 from tests import drawn
-from tests.agreement import arrays_of, differences, flat
-from tests.naive import shadows as twin
 from tests.shadows.strategies import Case, cases
+from tests.shadows.twin import check_agreement
 
 SCENES = 120
 
@@ -21,17 +21,8 @@ seen: Counter[str] = Counter()
 
 
 def agree(case: Case) -> None:
-    """Render with the package and with the twin, and compare everything; the picture alone is the same one."""
-    scene, params = case.scene, case.params
-    maps = shadows.prepare(scene, params, controls=case.controls) if params.method == "warp" else None
-    frame = shadows.render(scene, params, maps=maps)
-    stages, color, depth = twin.render(scene, params, case.controls)
-    theirs = {**flat(stages), "color": color, "depth": depth}
-    assert not (report := differences(arrays_of(frame), theirs)), report
-    bare = shadows.render(scene, params, maps=maps, stages=False)
-    assert bare.stages == {}
-    assert np.array_equal(bare.color, frame.color)
-    assert np.array_equal(bare.depth, frame.depth)
+    """Render a drawn scene with the package and with the twin, and remember what occurred in it."""
+    frame = check_agreement(case.scene, case.params, case.controls)
     seen.update(["scenes", *features(case, frame)])
 
 
@@ -89,3 +80,19 @@ def test_drawn_scenes_cover_every_feature(one_thread: None) -> None:
     expected = [name for row in EXPECTED.strip().splitlines() for name in row.split(" | ")]
     rare = {name: seen[name] for name in expected if seen[name] < 3}
     assert not rare, f"of {seen['scenes']} scenes too few show: {rare}"
+
+
+@pytest.mark.parametrize("content", ["mask", "depth"])
+@pytest.mark.parametrize(
+    "method",
+    [{"policy": "dissolve"}, {"policy": "nearest"}, {"method": "direct"}],
+    ids=lambda method: next(iter(method.values())),
+)
+def test_chair_agrees(method: dict[str, str], content: str, one_thread: None) -> None:
+    """1,464 triangles, many of them smaller than a texel, over a floor with steps; the controls follow its silhouette."""
+    scene = models.shadow_stage(models.chair(), offset=(0.31, -0.24), width=40, height=30)
+    params = Params(map_size=48, content=content, light_samples=5, **method)
+    frame = check_agreement(scene, params, prepare(scene, params, controls="fast").controls)
+    shadow = frame.stages["accumulate.shadow"]
+    assert (shadow > 0.9).any()
+    assert ((shadow > 0.0) & (shadow < 0.9)).any()

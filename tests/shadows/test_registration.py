@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from ibr_ref.shadows import controls, folds, registration, residuals, solver
+from ibr_ref.shadows.draw import Image, draw
 from ibr_ref.shadows.residuals import Places
-from ibr_ref.shadows.warp import Image, warp
+from ibr_ref.shadows.spans import spans
 
 SIZE = 48
 
@@ -49,7 +50,9 @@ def test_residuals_are_those_of_four_warps(task: registration.Task, points: Any)
         mixed = np.zeros((SIZE, SIZE))
         for w, (j, i) in zip(weights, around, strict=True):
             out = np.empty((SIZE, SIZE))
-            warp(Image(task.images[3 * j + i], None, points[j, i]), target, 0.0, out)
+            image = task.images[3 * j + i]
+            drawn = spans(image.reshape(SIZE, SIZE), None, 0.0)
+            draw(Image(image, None, drawn, points[j, i]), None, 0.0, target, 0.0, out)
             mixed += w * out
         total += ((mixed - task.places.targets[cell]) ** 2).sum()
     assert residuals.cost(task.images, task.places, points) == pytest.approx(total, rel=1e-12)

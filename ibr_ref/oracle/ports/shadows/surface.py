@@ -1,0 +1,118 @@
+"""The picture before its shadows: which surface each pixel sees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ibr_ref.oracle.ports.arithmetic import Floats
+from ibr_ref.oracle.ports.shadows.maps import Maps
+from ibr_ref.oracle.ports.shadows.raster import Flags, Fragments, Ints, Raster
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The N fragments that are seen."""
+
+    pixel: Ints
+    """(N,) row times width, plus column."""
+    world: list[Floats]
+    """Position, three (N,)."""
+    color: list[Floats]
+    """Three (N,)."""
+    normal: list[Floats]
+    """Flat, of unit length, as the triangle is wound; three (N,)."""
+    casts: Flags
+    """(N,) whether it is the caster's."""
+    depth: Floats
+    """(H W,) of the picture: 1 where nothing is seen."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Triangles of all meshes, in order: (T, 3) each."""
+
+    world: list[Floats]
+    clip: list[Floats]
+    color: list[Floats]
+    casts: Flags
+    """(T,)."""
+
+
+class Picture(Maps):
+    """Vertex stage, rasterization and depth test of receivers and caster."""
+
+    def meshes(self) -> list[tuple[list[Floats], Floats, Ints]]:
+        """World positions (three (V,)), colours (V, 3) and triangles of the receivers, then the caster."""
+        result = [(list(self.ops.number(mesh.vertices).T), mesh) for mesh in self.scene.receivers]
+        result.append((self.caster_vertices(self.offset), self.scene.caster))
+        return [
+            (world, np.broadcast_to(self.ops.number(mesh.color), (len(world[0]), 3)), np.asarray(mesh.triangles))
+            for world, mesh in result
+        ]
+
+    def to_clip(self, raster: Raster, world: list[Floats]) -> list[Floats]:
+        """Four (V,) clip coordinates of the picture."""
+        camera = self.scene.camera
+        seen = raster.transform(camera.view_from_world, [*world, np.ones_like(world[0])])
+        return raster.transform(camera.clip_from_view, seen)
+
+    def drawn(self, raster: Raster) -> Drawn:
+        """All triangles in the order of submission."""
+        world, clip, color = [], [], []
+        meshes = self.meshes()
+        for positions, colors, triangles in meshes:
+            world.append([component[triangles] for component in positions])
+            clip.append([component[triangles] for component in self.to_clip(raster, positions)])
+            color.append([component[triangles] for component in colors.T])
+        counts = [len(triangles) for _, _, triangles in meshes]
+        casts = np.repeat(np.arange(len(counts)) == len(counts) - 1, counts)
+        return Drawn(_joined(world), _joined(clip), _joined(color), casts)
+
+    def surface(self) -> Surface:
+        """What is seen."""
+        raster, camera = self.surface_raster(self.ops), self.scene.camera
+        drawn = self.drawn(raster)
+        corners, owner = raster.clip(np.stack([*drawn.clip, *drawn.world, *drawn.color], axis=-1))
+        x, y, z = raster.window(corners, camera.width, camera.height)
+        fragments = raster.cover(x, y, camera.width, camera.height)
+        depth = self.ops.depth(self.window_depth(raster, fragments, z, corners[..., 3]))
+        seen, held = raster.nearest(fragments.pixel, depth, camera.width * camera.height)
+        fragments = fragments.take(seen[seen >= 0])
+        mesh_triangle, w = owner[fragments.triangle], corners[..., 3]
+        return Surface(
+            pixel=fragments.pixel,
+            world=self.world(raster, fragments, w, [corners[..., k] for k in (4, 5, 6)]),
+            color=self.colors(raster, fragments, w, [corners[..., k] for k in (7, 8, 9)]),
+            normal=[component[mesh_triangle] for component in self.normals(drawn.world)],
+            casts=drawn.casts[mesh_triangle],
+            depth=held,
+        )
+
+    def window_depth(self, raster: Raster, fragments: Fragments, z: Floats, w: Floats) -> Floats:
+        """Of fragments: linear in the window."""
+        return raster.linear(fragments, z)
+
+    def world(self, raster: Raster, fragments: Fragments, w: Floats, corners: list[Floats]) -> list[Floats]:
+        """Positions of fragments."""
+        return raster.perspective(fragments, w, corners)
+
+    def colors(self, raster: Raster, fragments: Fragments, w: Floats, corners: list[Floats]) -> list[Floats]:
+        """Colours of fragments."""
+        return raster.perspective(fragments, w, corners)
+
+    def normals(self, world: list[Floats]) -> list[Floats]:
+        """Three (T,) of triangles with corners three (T, 3): the cross product of two edges, of unit length."""
+        first, second = ([self.ops.subtract(p[:, k], p[:, 0]) for p in world] for k in (1, 2))
+        return self.ops.unit(self.cross(first, second))
+
+    def cross(self, a: list[Floats], b: list[Floats]) -> list[Floats]:
+        """The vector product."""
+        ops = self.ops
+        return [ops.subtract(ops.multiply(a[i], b[j]), ops.multiply(a[j], b[i])) for i, j in ((1, 2), (2, 0), (0, 1))]
+
+
+def _joined(meshes: list[list[Floats]]) -> list[Floats]:
+    """The components of all meshes, one after another."""
+    return [np.concatenate(component) for component in zip(*meshes, strict=True)]

@@ -1,0 +1,173 @@
+"""Legal ports of shadows: each is right in its own way, and none may be accused."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ibr_ref.oracle.ports.arithmetic import Arithmetic, Floats, Policy
+from ibr_ref.oracle.ports.faults import Variant
+from ibr_ref.oracle.ports.shadows.port import Port
+from ibr_ref.oracle.ports.shadows.raster import Fragments, Raster
+from ibr_ref.oracle.ports.shadows.surface import Surface
+
+
+class _LerpByDifference(Arithmetic):
+    """A + f (b - a)."""
+
+    def lerp(self, a: ArrayLike, b: ArrayLike, f: ArrayLike) -> Floats:
+        return self.dot([a, f], [1.0, self.subtract(b, a)])
+
+
+class LerpByDifference(Port):
+    """Mixes are a + f (b - a)."""
+
+    arithmetic = _LerpByDifference
+
+
+class _Planes(Raster):
+    """Varyings by differences from the first corner."""
+
+    def linear(self, fragments: Fragments, corners: Floats) -> Floats:
+        ops, (a, b, c) = self.ops, corners[fragments.triangle].T
+        shares = [ops.divide(edge, fragments.area) for edge in fragments.edges[1:]]
+        return ops.dot([a, *shares], [1.0, ops.subtract(b, a), ops.subtract(c, a)])
+
+
+class Planes(Port):
+    """Window depths and texture coordinates are interpolated by plane equations."""
+
+    map_raster = direct_raster = warp_raster = surface_raster = _Planes
+
+
+class _SharesFirst(Raster):
+    """Perspective-correct weights that sum to one, then the sum of the corners."""
+
+    def perspective(self, fragments: Fragments, w: Floats, varyings: Sequence[Floats]) -> list[Floats]:
+        ops = self.ops
+        at = [ops.divide(edge, by) for edge, by in zip(fragments.edges, w[fragments.triangle].T, strict=True)]
+        shares = [ops.divide(weight, ops.sum(at)) for weight in at]
+        return [ops.dot(shares, list(varying[fragments.triangle].T)) for varying in varyings]
+
+
+class SharesFirst(Port):
+    """Varyings are sums by normalized weights."""
+
+    surface_raster = _SharesFirst
+
+
+class CombinedMatrices(Port):
+    """The texture matrix and the camera's are products, made once, in floats."""
+
+    def to_clip(self, raster: Raster, world: list[Floats]) -> list[Floats]:
+        """Clip coordinates by one product."""
+        camera = self.scene.camera
+        clip_from_world = self._product(self.ops.number(camera.clip_from_view), self.ops.number(camera.view_from_world))
+        return raster.transform(clip_from_world, [*world, np.ones_like(world[0])])
+
+    def texture_coordinates(self, world: list[Floats], place: Floats) -> list[Floats]:
+        """Q by one product."""
+        texture_from_light = self._product(self.texture_matrix(), self.clip_from_light)
+        matrix = self._product(texture_from_light, self.projecting_view(place))
+        return Raster(self.ops).transform(matrix, [*world, np.ones_like(world[0])])
+
+    def _product(self, a: Floats, b: Floats) -> Floats:
+        return np.stack([self.ops.dot(list(row), list(b)) for row in a])
+
+
+class HostMatrices(Port):
+    """The light's matrices are made in doubles and rounded once."""
+
+    def light_view(self, place: Floats) -> Floats:
+        """(4, 4) as it is uploaded."""
+        return self.ops.number(self.scene.light.camera(1, place).view_from_world)
+
+
+class CosineOverLengths(Port):
+    """n.l is divided by both lengths at the end; the normal is taken about the last corner."""
+
+    def normals(self, world: list[Floats]) -> list[Floats]:
+        """Of any length."""
+        first, second = ([self.ops.subtract(p[:, k], p[:, 2]) for p in world] for k in (0, 1))
+        return self.cross(first, second)
+
+    def toward_light(self, world: list[Floats]) -> list[Floats]:
+        """Of any length."""
+        return [self.ops.subtract(at, p) for p, at in zip(world, self.centre, strict=True)]
+
+    def cosine(self, surface: Surface) -> Floats:
+        """max(0, n.l) / (|n| |l|)."""
+        ops, light = self.ops, self.toward_light(surface.world)
+        normal = self.turned(surface.normal, self.toward_eye(surface.world))
+        lengths = ops.multiply(ops.root(ops.dot(normal, normal)), ops.root(ops.dot(light, light)))
+        return ops.divide(self.lambert(ops.dot(normal, light)), lengths)
+
+
+class MeanOfSamples(Port):
+    """A float sum is divided by N at its end."""
+
+    def accumulated(self, shadows: list[Floats]) -> Floats:
+        """(H, W)."""
+        if self.params.accumulation != "float":
+            return super().accumulated(shadows)
+        return self.ops.divide(self.ops.sum(shadows), len(shadows))
+
+
+class ShadeBySum(Port):
+    """Colour is the sum of an ambient and a direct part."""
+
+    def resolved(self, surface: Surface, shadow: Floats) -> Floats:
+        """(N, 3)."""
+        ops, ambient = self.ops, self.ambient()
+        light = ops.multiply(self.visibility(shadow), ops.multiply(self.direct_share(ambient), self.cosine(surface)))
+        return np.stack([ops.dot([color, color], [ambient, light]) for color in surface.color], axis=-1)
+
+
+class DirectFromCentre(Port):
+    """Method "direct" renders the object moved the opposite way from the centre: what the sample sees, but for rounding."""
+
+    def direct_map(self, place: Floats) -> Floats:
+        """(S, S)."""
+        raster = self.direct_raster(self.ops)
+        return self.caster_map(raster, self.place_of_object(place), self.light_view(self.centre))
+
+
+_VULKAN = Policy(reciprocal=True, weight_bits=8, subpixel_rounding="up", depth_bits=24)
+_GL = Policy(
+    fused=True, reciprocal=True, jitter=2, seed=4, weight_bits=8, weight_rounding="down", subpixel_rounding="down",
+    snapped_varyings=False, depth_bits=24, color_bits=8,
+)  # fmt: skip
+
+VARIANTS: tuple[Variant, ...] = (
+    Variant("doubles", Policy(float_bits=64), "ieee32"),
+    Variant("floats", Policy(), "ieee32"),
+    Variant("sums backwards", Policy(backwards=True), "ieee32"),
+    Variant("fused multiply-add", Policy(fused=True), "ieee32"),
+    Variant("fused, backwards", Policy(fused=True, backwards=True), "ieee32"),
+    Variant("lerp by difference", Policy(), "ieee32", LerpByDifference),
+    Variant("lerp by difference, fused", Policy(fused=True), "ieee32", LerpByDifference),
+    Variant("plane equations", Policy(), "ieee32", Planes),
+    Variant("normalized weights", Policy(), "ieee32", SharesFirst),
+    Variant("combined matrices", Policy(), "ieee32", CombinedMatrices),
+    Variant("combined matrices, fused", Policy(fused=True), "ieee32", CombinedMatrices),
+    Variant("matrices of the host", Policy(), "ieee32", HostMatrices),
+    Variant("cosine over lengths", Policy(), "ieee32", CosineOverLengths),
+    Variant("mean of samples", Policy(), "ieee32", MeanOfSamples),
+    Variant("shade by sum", Policy(fused=True), "ieee32", ShadeBySum),
+    Variant("direct from the centre", Policy(), "ieee32", DirectFromCentre),
+    Variant("reciprocals", Policy(reciprocal=True), "vulkan"),
+    Variant("8-bit weights", Policy(weight_bits=8), "vulkan"),
+    Variant("8-bit weights truncated", Policy(weight_bits=8, weight_rounding="down"), "vulkan"),
+    Variant("subpixels up", Policy(subpixel_rounding="up"), "vulkan"),
+    Variant("subpixels truncated", Policy(subpixel_rounding="down"), "vulkan"),
+    Variant("24-bit depth", Policy(depth_bits=24), "vulkan"),
+    Variant("all of vulkan", _VULKAN, "vulkan", CombinedMatrices),
+    Variant("jitter 1", Policy(jitter=2, seed=1), "gl"),
+    Variant("jitter 2", Policy(jitter=2, seed=2), "gl"),
+    Variant("jitter 3", Policy(jitter=2, seed=3, backwards=True), "gl"),
+    Variant("unsnapped varyings", Policy(snapped_varyings=False), "gl"),
+    Variant("8-bit colour", Policy(color_bits=8), "gl"),
+    Variant("all of gl", _GL, "gl"),
+)

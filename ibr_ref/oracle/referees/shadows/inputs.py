@@ -1,0 +1,170 @@
+"""What a stage is fed with when it is replayed: the port's own arrays, as they are, else the reference's with bounds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.judgement import Handed
+from ibr_ref.oracle.referees.shadows import places
+from ibr_ref.oracle.referees.shadows.maps import Map, rendered
+from ibr_ref.oracle.referees.shadows.places import Place
+from ibr_ref.oracle.referees.shadows.surface import Seen, see
+from ibr_ref.oracle.referees.shadows.transform import Lens
+from ibr_ref.oracle.referees.shadows.warp import Source, between, pair, place_of, warped
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class Inputs:
+    """A case on a device with what a port has handed in; each array is made when it is asked for, once."""
+
+    case: Any
+    device: Device
+    handed: Handed = field(default_factory=dict)
+
+    @property
+    def direct(self) -> bool:
+        """Whether maps are rendered for every sample."""
+        return bool(self.case.params.method == "direct")
+
+    @property
+    def count(self) -> int:
+        """Light samples."""
+        return places.count(self.case)
+
+    @cached_property
+    def samples(self) -> list[places.Sample]:
+        """The light's samples."""
+        return places.samples(self.case, self.device)
+
+    @cached_property
+    def lenses(self) -> list[Lens]:
+        """What each sample sees."""
+        size, light = int(self.case.params.map_size), self.case.scene.light
+        return [Lens.of(light.camera(size, s.position), s.position) for s in self.samples]
+
+    @cached_property
+    def seen(self) -> Seen:
+        """What the camera may see; no stage array holds it."""
+        return see(self.case, self.device)
+
+    def own(self, name: str, *, sampled: bool = True) -> Floats | None:
+        """A port's array in float64, with an axis of samples first; None if it was not handed in."""
+        if name not in self.handed:
+            return None
+        array = np.asarray(self.handed[name]).astype(np.float64)
+        return array[None] if sampled and self.count == 1 else array
+
+    def reference(self, name: str, *, sampled: bool = True) -> Floats:
+        """The reference's, the same way."""
+        array = np.asarray(self.case.frame.stages[name]).astype(np.float64)
+        return array[None] if sampled and self.count == 1 else array
+
+    @cached_property
+    def positions(self) -> Floats:
+        """(3, 3, 2) as the case gives them."""
+        return self.reference("maps.positions", sampled=False)
+
+    @cached_property
+    def controls(self) -> Bounded:
+        """(3, 3, R, C, 2): the port's own, or as they are given."""
+        own = self.own("controls", sampled=False)
+        if own is not None:
+            return exact(own, self.device)
+        return uploaded(self.reference("controls", sampled=False), self.device)
+
+    @cached_property
+    def images(self) -> Bounded:
+        """(3, 3, S, S) as they are given: a port renders its own to be judged for themselves."""
+        return uploaded(self.reference("maps.image", sampled=False), self.device)
+
+    def offset_seen(self, sample: int) -> list[Bounded]:
+        """x and y of the object as a sample sees it."""
+        moves = self.samples[sample].displacement
+        return [o - d for o, d in zip(places.offset(self.case, self.device), moves, strict=True)]
+
+    def places(self, sample: int) -> list[tuple[Place, Place]]:
+        """The cells and fractions along x and y that a sample may find, the likeliest first."""
+        own_cell, own_fraction = self.own("warp.cell"), self.own("warp.fraction")
+        if own_cell is not None and not np.isin(own_cell[sample], (0.0, 1.0)).all():
+            own_cell = None
+        return place_of(
+            self.positions,
+            self.offset_seen(sample),
+            None if own_cell is None else own_cell[sample].astype(np.int64),
+            None if own_fraction is None else own_fraction[sample],
+        )
+
+    def row_grids(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
+        """Two (R, C, 2)."""
+        own = self.own("warp.row_grids")
+        if own is not None:
+            return [exact(grid, self.device) for grid in own[sample]]
+        return self.made_row_grids(place)
+
+    def made_row_grids(self, place: tuple[Place, Place]) -> list[Bounded]:
+        """From the controls."""
+        x, y = place
+        return [
+            between(self.controls[y.cell + k, x.cell], self.controls[y.cell + k, x.cell + 1], x.fraction)
+            for k in range(2)
+        ]
+
+    def grid(self, sample: int, place: tuple[Place, Place]) -> Bounded:
+        """(R, C, 2)."""
+        own = self.own("warp.grid")
+        if own is not None:
+            return exact(own[sample], self.device)
+        return self.made_grid(sample, place)
+
+    def made_grid(self, sample: int, place: tuple[Place, Place]) -> Bounded:
+        """From the row grids."""
+        first, second = self.row_grids(sample, place)
+        return between(first, second, place[1].fraction)
+
+    def rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
+        """Two (S, S)."""
+        own = self.own("warp.rows")
+        if own is not None:
+            return [exact(row, self.device) for row in own[sample]]
+        return self.made_rows(sample, place)
+
+    def made_rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
+        """From the nine maps."""
+        x, y = place
+        result = []
+        for k, target in enumerate(self.row_grids(sample, place)):
+            sources = [
+                Source(self.images[y.cell + k, x.cell + n], self.controls[y.cell + k, x.cell + n]) for n in range(2)
+            ]
+            result.append(pair(sources[0], sources[1], x.fraction, target, self.nearest))
+        return result
+
+    @property
+    def nearest(self) -> bool:
+        """The policy of three warps."""
+        return bool(self.case.params.policy == "nearest")
+
+    def made_image(self, sample: int, place: tuple[Place, Place]) -> Bounded:
+        """(S, S) from the rows."""
+        grids, rows = self.row_grids(sample, place), self.rows(sample, place)
+        sources = [Source(row, grid) for row, grid in zip(rows, grids, strict=True)]
+        return pair(sources[0], sources[1], place[1].fraction, self.grid(sample, place), self.nearest)
+
+    def map(self, sample: int) -> Map:
+        """What is projected for a sample."""
+        own = self.own("warp.image")
+        if own is not None:
+            return Map.of(exact(own[sample], self.device))
+        if self.direct:
+            at = places.offset(self.case, self.device)
+            return rendered(self.case, self.lenses[sample], at, self.reference("warp.image")[sample])
+        return Map.of(warped([self.made_image(sample, place) for place in self.places(sample)]))

@@ -1,0 +1,133 @@
+"""Where the light's samples are, where the object stands as each sees it, and where that is among the nine maps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, uploaded
+from ibr_ref.oracle.device import Device
+
+Floats = NDArray[np.float64]
+
+STEP = 2.0 / 3.0
+"""g: the light's samples are at the centres of cells three to an edge (shadows.md, inputs)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """A sample of the light."""
+
+    position: Floats
+    """(3,)."""
+    displacement: list[Bounded]
+    """x and y of position - centre along the offset axes."""
+
+
+def count(case: Any) -> int:
+    """How many samples there are."""
+    given = case.params.light_samples
+    return len(given) if isinstance(given, np.ndarray) else int(given)
+
+
+def samples(case: Any, device: Device) -> list[Sample]:
+    """In the order of the contract."""
+    scene, params = case.scene, case.params
+    centre, edges = (np.asarray(a, np.float64) for a in scene.light.arrays)
+    axes = [[uploaded(n, device) for n in axis] for axis in np.asarray(scene.axes, np.float64)]
+    if isinstance(params.light_samples, np.ndarray):
+        moves = [[uploaded(n, device) for n in position] for position in params.light_samples]
+        moves = [[n - uploaded(c, device) for n, c in zip(move, centre, strict=True)] for move in moves]
+        positions = list(np.asarray(params.light_samples, np.float64))
+    else:
+        steps = {1: (), 5: (-STEP, STEP), 9: (-STEP, 0.0, STEP)}[int(params.light_samples)]
+        around = [(g, h) for h in steps for g in steps if (g, h) != (0.0, 0.0)]
+        positions = [centre, *(centre + (g * edges[0] + h * edges[1]) for g, h in around)]
+        moves = [[exact(0.0, device)] * 3, *(_moved(g, h, edges, centre, device) for g, h in around)]
+    return [
+        Sample(position, list(on_axes(axes, move)) if i or len(positions) > 1 else [exact(0.0, device)] * 2)
+        for i, (position, move) in enumerate(zip(positions, moves, strict=True))
+    ]
+
+
+def _moved(g: float, h: float, edges: Floats, centre: Floats, device: Device) -> list[Bounded]:
+    """position - centre, with the position's own roundings or without."""
+    result = []
+    for k in range(3):
+        middle = uploaded(centre[k], device)
+        place = middle + dot([uploaded(g, device), uploaded(h, device)], [uploaded(e, device) for e in edges[:, k]])
+        difference = place - middle
+        value = (centre[k] + (g * edges[0, k] + h * edges[1, k])) - centre[k]
+        result.append(Bounded(np.asarray(value), difference.error, device))
+    return result
+
+
+def on_axes(axes: Sequence[Sequence[Bounded]], vector: Sequence[Bounded]) -> tuple[Bounded, Bounded]:
+    """x and y of the point x a + y b next to a vector, by the axes' Gram matrix."""
+    a, b = axes
+    aa, ab, bb = dot(a, a), dot(a, b), dot(b, b)
+    va, vb = dot(vector, a), dot(vector, b)
+    determinant = aa * bb - ab * ab
+    return (bb * va - ab * vb) / determinant, (aa * vb - ab * va) / determinant
+
+
+def offset(case: Any, device: Device) -> list[Bounded]:
+    """x and y of the object."""
+    return [uploaded(o, device) for o in np.asarray(case.scene.offset, np.float64)]
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Along one axis: a cell of the positions that may hold the object, and its fraction in that."""
+
+    cell: int
+    fraction: Bounded
+
+
+def located(lines: Floats, at: Bounded) -> list[Place]:
+    """The legal places on an axis with three positions, the reference's first: two where the middle line is too near."""
+    device = at.device
+    low, middle, high = (uploaded(line, device) for line in lines)
+    away = at - middle
+    cells = [int(at.value >= middle.value)]
+    if abs(away.value) <= away.error:
+        cells.append(1 - cells[0])
+    ends = ((low, middle), (middle, high))
+    return [Place(cell, (at - ends[cell][0]) / (ends[cell][1] - ends[cell][0])) for cell in cells]
+
+
+def fraction_in(lines: Floats, at: Bounded, cell: int) -> Bounded:
+    """The fraction in a cell that the port has chosen."""
+    ends = [uploaded(line, at.device) for line in lines[cell : cell + 2]]
+    return (at - ends[0]) / (ends[1] - ends[0])
+
+
+def positions(case: Any, device: Device) -> list[list[Bounded]]:
+    """For x and y the three positions of the object in the nine maps."""
+    scene = case.scene
+    axes = [[uploaded(n, device) for n in axis] for axis in np.asarray(scene.axes, np.float64)]
+    own = on_axes(axes, [uploaded(n, device) for n in scene.light.arrays[0]])
+    ends = np.asarray(scene.offset_range, np.float64)
+    result = []
+    for k in range(2):
+        moves = [sample.displacement[k] for sample in samples(case, device)]
+        widest = np.max([abs(m.value) for m in moves])
+        error = np.max([m.error for m in moves])
+        widening = Bounded(np.asarray(widest), np.asarray(error), device)
+        low, high = uploaded(ends[k, 0], device) - widening, uploaded(ends[k, 1], device) + widening
+        result.append([low, _middle(low, high, own[k]), high])
+    return result
+
+
+def _middle(low: Bounded, high: Bounded, own: Bounded) -> Bounded:
+    """The light's own coordinate; the range's middle where it falls on an end, or perhaps either."""
+    halfway = (low + high) * exact(0.5, low.device)
+    inside = low.value < own.value < high.value
+    chosen = own if inside else halfway
+    if min(abs(own.value - low.value), abs(own.value - high.value)) > own.error + low.error + high.error:
+        return chosen
+    return chosen.widened(abs(own.value - halfway.value) + own.error + halfway.error)

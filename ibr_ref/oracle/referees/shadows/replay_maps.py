@@ -1,0 +1,158 @@
+"""Replay of the stages maps, controls and warp."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.referees.shadows import maps, places
+from ibr_ref.oracle.referees.shadows.inputs import Inputs
+from ibr_ref.oracle.referees.shadows.judging import judgement, stacked
+from ibr_ref.oracle.referees.shadows.places import Place
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+Spot = tuple[Place, Place]
+
+
+def positions(given: Inputs) -> Judgement | None:
+    """Where the object stands in the nine maps."""
+    found = given.own("maps.positions", sampled=False)
+    if found is None or given.direct:
+        return None
+    x, y = places.positions(given.case, given.device)
+    right = np.ones((3, 3), np.bool_)
+    for i in range(3):
+        right[:, i] &= x[i].allows(found[:, i, 0])
+        right[i, :] &= y[i].allows(found[i, :, 1])
+    width = np.array([[2.0 * max(float(a.error), float(b.error)) for a in x] for b in y])
+    return judgement("maps", "map", ["maps.positions"], [right], width)
+
+
+def images(given: Inputs) -> Judgement | None:
+    """The nine maps, at the port's own positions."""
+    found = given.own("maps.image", sampled=False)
+    if found is None or given.direct:
+        return None
+    own = given.own("maps.positions", sampled=False)
+    x, y = places.positions(given.case, given.device)
+    results = []
+    for j, i in np.ndindex(3, 3):
+        at = [x[i], y[j]] if own is None else [exact(own[j, i, k], given.device) for k in range(2)]
+        results.append(maps.allows(given.case, given.lenses[0], at, found[j, i]))
+    right, undecided, width = (np.stack(part).reshape(found.shape) for part in zip(*results, strict=True))
+    replayed = [] if own is None else ["maps.positions"]
+    return judgement("maps", "texel", ["maps.image"], [right], width, replayed=replayed, undecided=undecided)
+
+
+def controls(given: Inputs) -> Judgement | None:
+    """The control points as they were given."""
+    found = given.own("controls", sampled=False)
+    if found is None or given.direct:
+        return None
+    bound = uploaded(given.reference("controls", sampled=False), given.device)
+    right = np.asarray(bound.allows(found).all(axis=-1))
+    return judgement("controls", "control point", ["controls"], [right], 2.0 * bound.error.max(axis=-1))
+
+
+def spots(given: Inputs) -> Judgement | None:
+    """Cell and fraction together, axis by axis."""
+    cells, fractions = given.own("warp.cell"), given.own("warp.fraction")
+    own = {name: a for name, a in (("warp.cell", cells), ("warp.fraction", fractions)) if a is not None}
+    if not own or given.direct:
+        return None
+    right = {name: np.zeros((given.count, 2), np.bool_) for name in own}
+    together, undecided, width = np.zeros((given.count, 2), np.bool_), np.zeros((given.count, 2), np.bool_), []
+    lines = given.positions[0, :, 0], given.positions[:, 0, 1]
+    for sample, k in np.ndindex(given.count, 2):
+        legal = places.located(lines[k], given.offset_seen(sample)[k])
+        for place in legal:
+            agrees = {
+                "warp.cell": cells is None or bool(cells[sample, k] == place.cell),
+                "warp.fraction": fractions is None or bool(place.fraction.allows(fractions[sample, k])),
+            }
+            for name in own:
+                right[name][sample, k] |= agrees[name]
+            together[sample, k] |= all(agrees.values())
+        undecided[sample, k] = len(legal) > 1
+        width.append(2.0 * float(legal[0].fraction.error))
+    shape = np.shape(given.handed[next(iter(own))])
+    return judgement(
+        "warp",
+        "axis",
+        list(own),
+        [right[name].reshape(shape) for name in own],
+        np.array(width).reshape(shape),
+        undecided=undecided.reshape(shape),
+        together=together.reshape(shape),
+    )
+
+
+def row_grids(given: Inputs) -> Judgement | None:
+    """The grids of the two rows."""
+    feeds = ("controls", "warp.cell", "warp.fraction")
+    return _points(given, "warp.row_grids", lambda s, p: stacked(given.made_row_grids(p)), feeds)
+
+
+def rows(given: Inputs) -> Judgement | None:
+    """The two rows."""
+    feeds = ("controls", "warp.cell", "warp.fraction", "warp.row_grids")
+    return _texels(given, "warp.rows", lambda s, p: stacked(given.made_rows(s, p)), feeds)
+
+
+def grids(given: Inputs) -> Judgement | None:
+    """The grid of the object's place."""
+    return _points(given, "warp.grid", given.made_grid, ("warp.fraction", "warp.row_grids"))
+
+
+def warped(given: Inputs) -> Judgement | None:
+    """The map of each sample; method="direct": as it is rendered."""
+    if not given.direct:
+        return _texels(
+            given, "warp.image", given.made_image, ("warp.fraction", "warp.row_grids", "warp.rows", "warp.grid")
+        )
+    found = given.own("warp.image")
+    if found is None:
+        return None
+    at = places.offset(given.case, given.device)
+    results = [maps.allows(given.case, lens, at, image) for lens, image in zip(given.lenses, found, strict=True)]
+    shape = np.shape(given.handed["warp.image"])
+    right, undecided, width = (np.stack(part).reshape(shape) for part in zip(*results, strict=True))
+    return judgement("warp", "texel", ["warp.image"], [right], width, undecided=undecided)
+
+
+def _points(given: Inputs, name: str, make: Callable[[int, Spot], Bounded], feeds: Sequence[str]) -> Judgement | None:
+    found = given.own(name)
+    if found is None or given.direct:
+        return None
+    right, width = _compared(given, found, make)
+    return _judged(given, "control point", name, np.asarray(right.all(axis=-1)), width.max(axis=-1), feeds)
+
+
+def _texels(given: Inputs, name: str, make: Callable[[int, Spot], Bounded], feeds: Sequence[str]) -> Judgement | None:
+    found = given.own(name)
+    if found is None or given.direct:
+        return None
+    return _judged(given, "texel", name, *_compared(given, found, make), feeds)
+
+
+def _compared(given: Inputs, found: Floats, make: Callable[[int, Spot], Bounded]) -> tuple[Bools, Floats]:
+    """For each sample at the place that agrees with most of what the port has."""
+    right, width = [], []
+    for sample in range(given.count):
+        options = [make(sample, place) for place in given.places(sample)]
+        agree = [option.allows(found[sample]) for option in options]
+        best = max(range(len(options)), key=lambda i: int(agree[i].sum()))
+        right.append(agree[best])
+        width.append(np.broadcast_to(2.0 * options[best].error, agree[best].shape))
+    return np.stack(right), np.stack(width)
+
+
+def _judged(given: Inputs, element: str, name: str, right: Bools, width: Floats, feeds: Sequence[str]) -> Judgement:
+    if given.count == 1:
+        right, width = right[0], width[0]
+    return judgement("warp", element, [name], [right], width, replayed=[n for n in feeds if n in given.handed])

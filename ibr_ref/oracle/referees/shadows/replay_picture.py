@@ -1,0 +1,164 @@
+"""Replay of what is drawn with the camera: depth, project, accumulate and resolve.
+
+The contract has no array of what the camera sees: every fragment that may be shown is followed. Where the port has handed in
+its depth, only those that agree with it, or all where none does, which is the depth's fault.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.accept.bounded import exact
+from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.referees.shadows import resolve
+from ibr_ref.oracle.referees.shadows.accumulate import accumulated
+from ibr_ref.oracle.referees.shadows.branches import Branches, branches, in_shadow, spread
+from ibr_ref.oracle.referees.shadows.inputs import Inputs
+from ibr_ref.oracle.referees.shadows.judging import judgement
+from ibr_ref.oracle.referees.shadows.maps import VISIBLE
+from ibr_ref.oracle.referees.shadows.project import Shadow, coordinate, handed, shadow
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+
+
+def depth(given: Inputs) -> Judgement | None:
+    """Which surface is seen, by its depth."""
+    own = given.own("depth", sampled=False)
+    if own is None:
+        return None
+    seen = given.seen
+    flat = own.reshape(-1)
+    right = seen.any_of(seen.pixel, seen.depth.allows(flat[seen.pixel]), flat == 1.0)
+    width, least, most = np.zeros(flat.size), np.where(seen.empty, 1.0, np.inf), np.where(seen.empty, 1.0, -np.inf)
+    np.maximum.at(width, seen.pixel, 2.0 * seen.depth.error)
+    np.minimum.at(least, seen.pixel, seen.depth.low)
+    np.maximum.at(most, seen.pixel, seen.depth.high)
+    undecided = (most - least > width + VISIBLE) | seen.wild
+    shape = seen.shape
+    arrays = right.reshape(shape), width.reshape(shape), undecided.reshape(shape)
+    return judgement("depth", "pixel", ["depth"], [arrays[0]], arrays[1], undecided=arrays[2])
+
+
+def _agreeing(given: Inputs) -> tuple[Bools, Bools]:
+    """(n,) fragments that a port's depth leaves, and (H W,) pixels that it leaves empty."""
+    seen, own = given.seen, given.own("depth", sampled=False)
+    if own is None:
+        return np.ones(len(seen.pixel), np.bool_), np.ones(len(seen.empty), np.bool_)
+    flat = own.reshape(-1)
+    legal = seen.depth.allows(flat[seen.pixel])
+    right = seen.any_of(seen.pixel, legal, flat == 1.0)
+    return legal | ~right[seen.pixel], (flat == 1.0) | ~right
+
+
+def projected(given: Inputs) -> Judgement | None:
+    """Coordinates and shadows of all samples together, for each fragment that a pixel may show."""
+    coords, found = given.own("project.coord"), given.own("project.shadow")
+    names = [n for n, a in (("project.coord", coords), ("project.shadow", found)) if a is not None]
+    if not names:
+        return None
+    seen, pixel = given.seen, given.seen.pixel
+    fragments, nothing = _agreeing(given)
+    legal = {name: fragments.copy() for name in names}
+    undecided, width = seen.wild.copy(), np.zeros(len(seen.empty))
+    for i, lens in enumerate(given.lenses):
+        at = coordinate(lens, seen.world)
+        if coords is not None:
+            own = coords[i].reshape(-1, 3)
+            nothing &= (own == 0.0).all(axis=1)
+            for k, axis in enumerate(at.axes):
+                legal["project.coord"] &= axis.allows(own[pixel, k])
+                np.maximum.at(width, pixel, 2.0 * axis.error)
+            at = handed(own[pixel], at.w)
+        if found is not None:
+            flat = found[i].reshape(-1)
+            nothing &= flat == 0.0
+            shadows = shadow(given.case, given.map(i), at, seen.caster)
+            legal["project.shadow"] &= shadows.allows(flat[pixel])
+            undecided[pixel[_differs(shadows)]] = True
+            np.maximum.at(width, pixel, 2.0 * np.broadcast_to(shadows.first.error, pixel.shape))
+    right = [seen.any_of(pixel, legal[name], nothing).reshape(seen.shape) for name in names]
+    every = np.logical_and.reduce([legal[name] for name in names])
+    return judgement(
+        "project",
+        "pixel",
+        names,
+        right,
+        width.reshape(seen.shape),
+        replayed=[name for name in ("warp.image", "depth") if name in given.handed],
+        undecided=undecided.reshape(seen.shape),
+        together=seen.any_of(pixel, every, nothing).reshape(seen.shape),
+    )
+
+
+def _differs(legal: Shadow) -> Bools:
+    out = (legal.first.low - legal.other.low > VISIBLE) | (legal.other.high - legal.first.high > VISIBLE)
+    return np.asarray(legal.open & out)
+
+
+def sums(given: Inputs) -> Judgement | None:
+    """The sum of the port's own shadows, or of what they may be."""
+    if "accumulate.shadow" not in given.handed:
+        return None
+    found = np.asarray(given.handed["accumulate.shadow"]).astype(np.float64)
+    own, name = given.own("project.shadow"), "accumulate.shadow"
+    if own is not None:
+        shadows = [exact(s, given.device) for s in own]
+        bound = accumulated(shadows, given.case.params.accumulation == "unorm8")
+        right, width = bound.allows(found), np.broadcast_to(2.0 * bound.error, found.shape)
+        return judgement("accumulate", "pixel", [name], [right], width, replayed=["project.shadow"])
+    seen, outcomes = given.seen, _outcomes(given)
+    pixel = seen.pixel[outcomes.fragment]
+    fragments, nothing = _agreeing(given)
+    legal = outcomes.shadow.allows(found.reshape(-1)[pixel]) & fragments[outcomes.fragment]
+    right = seen.any_of(pixel, legal, nothing & (found.reshape(-1) == 0.0))
+    right[seen.pixel[outcomes.crowded]] = True
+    width = np.zeros(found.size)
+    np.maximum.at(width, pixel, 2.0 * np.broadcast_to(outcomes.shadow.error, pixel.shape))
+    feeds = [n for n in ("warp.image", "depth", "project.coord") if n in given.handed]
+    return judgement(
+        "accumulate", "pixel", [name], [right.reshape(seen.shape)], width.reshape(seen.shape), replayed=feeds
+    )
+
+
+def _outcomes(given: Inputs) -> Branches:
+    """What the sum may be, from the port's own shadows or coordinates if it has handed them in."""
+    seen, own = given.seen, given.own("project.shadow")
+    if own is not None:
+        shadows = [exact(s.reshape(-1)[seen.pixel], given.device) for s in own]
+        return in_shadow(seen, accumulated(shadows, given.case.params.accumulation == "unorm8"))
+    coords, outcomes = given.own("project.coord"), []
+    for i, lens in enumerate(given.lenses):
+        at = coordinate(lens, seen.world)
+        if coords is not None:
+            at = handed(coords[i].reshape(-1, 3)[seen.pixel], at.w)
+        outcomes.append(shadow(given.case, given.map(i), at, seen.caster))
+    return branches(given.case, seen, outcomes)
+
+
+def colors(given: Inputs) -> Judgement | None:
+    """Colour, in the port's own shadow."""
+    if "color" not in given.handed:
+        return None
+    seen, scene, own = given.seen, given.case.scene, given.own("accumulate.shadow", sampled=False)
+    if own is not None:
+        outcomes = in_shadow(seen, exact(own.reshape(-1)[seen.pixel], given.device))
+    else:
+        outcomes = _outcomes(given)
+    color = resolve.colors(scene, seen, outcomes.fragment, outcomes.turned, outcomes.shadow)
+    pixel, shown = seen.pixel[outcomes.fragment], np.asarray(given.handed["color"])
+    fragments, nothing = _agreeing(given)
+    legal = resolve.allows(color, shown.reshape(-1, 3)[pixel]) & fragments[outcomes.fragment]
+    right = seen.any_of(pixel, legal, nothing & resolve.allows_nothing(scene, seen, shown, None))
+    right[seen.pixel[outcomes.crowded]] = True
+    undecided, width = spread(given.case, seen, outcomes, color)
+    return judgement(
+        "resolve",
+        "pixel",
+        ["color"],
+        [right.reshape(seen.shape)],
+        width.reshape(seen.shape),
+        replayed=[n for n in ("depth", "accumulate.shadow") if n in given.handed],
+        undecided=(undecided | seen.wild).reshape(seen.shape),
+    )

@@ -1,0 +1,134 @@
+"""Stage warp: grids between grids, and images warped from one to the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp
+from ibr_ref.oracle.accept.coverage import Fragments, fragments
+from ibr_ref.oracle.accept.fetch import Texture, fetch
+from ibr_ref.oracle.referees.shadows.places import Place, fraction_in, located
+from ibr_ref.oracle.referees.shadows.varyings import Triangles, linear
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """An image to warp, (S, S), and its grid (R, C, 2)."""
+
+    image: Bounded
+    grid: Bounded
+
+
+def between(first: Bounded, second: Bounded, share: Bounded) -> Bounded:
+    """Two grids' lerp."""
+    return lerp(first, second, share)
+
+
+def place_of(
+    positions: Floats, at: Sequence[Bounded], cell: NDArray[np.int64] | None, fraction: Floats | None
+) -> list[tuple[Place, Place]]:
+    """Where along x and y an object may be among positions (3, 3, 2), the likeliest first.
+
+    cell, fraction (2,): a port's own.
+    """
+    axes: list[list[Place]] = []
+    for k, line in enumerate((positions[0, :, 0], positions[:, 0, 1])):
+        found = located(line, at[k])
+        if cell is not None:
+            found = [Place(int(cell[k]), fraction_in(line, at[k], int(cell[k])))]
+        if fraction is not None:
+            found = [Place(place.cell, exact(fraction[k], at[k].device)) for place in found]
+        axes.append(found)
+    return [(x, y) for x in axes[0] for y in axes[1]]
+
+
+def warped(alternatives: Sequence[Bounded]) -> Bounded:
+    """The first one's value, and an error that covers all."""
+    first = alternatives[0]
+    error = first.error
+    for other in alternatives[1:]:
+        error = np.maximum(error, np.abs(other.value - first.value) + other.error)
+    return Bounded(first.value, error, first.device)
+
+
+def pair(first: Source, second: Source, share: Bounded, target: Bounded, nearest: bool) -> Bounded:
+    """Both warped to the grid `target` and mixed, or the nearer one alone: (S, S).
+
+    The mesh covers the whole map: its border is the map's, so that there is no pixel outside, whatever is snapped.
+    """
+    size = len(first.image.value)
+    mesh = _Mesh.of(target, size)
+    if not nearest:
+        images = [mesh.warped(source) for source in (first, second)]
+        return lerp(images[0], images[1], share)
+    chosen = [first if share.value < 0.5 else second]
+    if abs(float(share.value) - 0.5) <= float(share.error):
+        chosen.append(second if share.value < 0.5 else first)
+    return warped([mesh.warped(source) for source in chosen])
+
+
+@dataclass(frozen=True, eq=False)
+class _Mesh:
+    """A grid's triangles in the window of a map, and all pixels that each may cover."""
+
+    found: Fragments
+    triangles: Triangles
+    size: int
+    last: NDArray[np.int64]
+    """(S S) the fragment that the reference shows."""
+
+    @classmethod
+    def of(cls, target: Bounded, size: int) -> _Mesh:
+        """Corners go from [0, 1] to [-1, 1] and from there to the window."""
+        device = target.device
+        one, two, half = exact(1.0, device), exact(2.0, device), exact(size / 2.0, device)
+        corners = grid_corners(target)
+        window = (corners * two - one + one) * half
+        # The reference snaps S G' itself.
+        placed = Bounded(corners.value * size, window.error, device)
+        x, y = placed[..., 0], placed[..., 1]
+        found = fragments(x, y, size, size)
+        return cls(found, Triangles.of(x, y, size, size), size, _last(found, size))
+
+    def warped(self, source: Source) -> Bounded:
+        """An image with its grid as texture coordinates."""
+        corners = grid_corners(source.grid)
+        u, v = (linear(self.triangles, self.found, corners[..., k]) for k in range(2))
+        device = u.device
+        value = fetch(Texture(source.image.value), u, v)
+        if np.any(source.image.error > 0.0):
+            error = np.broadcast_to(source.image.error, source.image.value.shape)
+            value = value.widened(fetch(Texture(error), u, v).high)
+        pixel = self.found.rows * self.size + self.found.columns
+        shown = value.value[self.last]
+        error = np.zeros(self.size * self.size)
+        np.maximum.at(error, pixel, np.abs(value.value - shown[pixel]) + value.error)
+        shape = self.size, self.size
+        return Bounded(shown.reshape(shape), error.reshape(shape), device)
+
+
+def _last(found: Fragments, size: int) -> NDArray[np.int64]:
+    """(S S) by pixel, of the fragments inside their triangle the last one, else the one that is least outside."""
+    pixel = found.rows * size + found.columns
+    inside = np.nan_to_num(np.minimum(found.weights.min(axis=1), 0.0), nan=-np.inf, neginf=-np.inf)
+    order = np.lexsort((found.triangle, inside, pixel))
+    last = np.zeros(size * size, np.int64)
+    last[pixel[order]] = order
+    return last
+
+
+def grid_corners(grid: Bounded) -> Bounded:
+    """(2 (R-1) (C-1), 3, 2) corners of a grid's triangles, in the order in which they are drawn."""
+    error = np.broadcast_to(grid.error, grid.value.shape)
+    return replace(grid, value=_corners(grid.value), error=_corners(error))
+
+
+def _corners(grid: Floats) -> Floats:
+    a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
+    return np.stack([a, b, c, a, c, d], axis=2).reshape(-1, 3, 2)
