@@ -10,6 +10,7 @@ import ctypes
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import moderngl
 import numpy as np
@@ -71,6 +72,11 @@ class Device:
     def renderer(self) -> str:
         """GL_RENDERER and GL_VERSION in one line."""
         return f"{self.ctx.info['GL_RENDERER']}, {self.ctx.info['GL_VERSION']}"
+
+
+def source(name: str) -> str:
+    """The GLSL of a file beside this one, without `#version` and #defines."""
+    return (Path(__file__).parent / name).read_text(encoding="utf-8")
 
 
 def create_device(*, clip_control: bool = True) -> Device:

@@ -9,15 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import moderngl
 import numpy as np
 
 from tests.ports import gl
-
-HERE = Path(__file__).parent
 
 
 def place_in_cell(positions: np.ndarray, offset: np.ndarray) -> tuple[list[int], list[float]]:
@@ -41,7 +38,7 @@ class Programs:
         if key not in self._linked:
             flags = (*flags, "ZERO_TO_ONE") if self._device.zero_to_one else flags
             head = "#version 450 core\n" + "".join(f"#define {flag}\n" for flag in flags)
-            sources = [head + (HERE / f"shadows_{name}").read_text() for name in (f"{vertex}.vert", f"{fragment}.frag")]
+            sources = [head + gl.source(f"shadows_{name}") for name in (f"{vertex}.vert", f"{fragment}.frag")]
             self._linked[key] = self._device.ctx.program(vertex_shader=sources[0], fragment_shader=sources[1])
         return self._linked[key]
 

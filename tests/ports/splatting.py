@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import moderngl
@@ -26,7 +25,6 @@ import numpy as np
 
 from tests.ports import gl
 
-HERE = Path(__file__).parent
 FAST = {"color": (4, "f1")}
 STAGES = {"color": (4, "f4"), "splat": (1, "i4")}
 VARYINGS = {"window": 2, "depth": 1, "width": 1, "color": 3}
@@ -169,7 +167,7 @@ class Port:
     def _program(self, defines: str, varyings: Sequence[str] = ()) -> moderngl.Program:
         """The linked program for these #defines; with varyings for transform feedback, of the vertex stage alone."""
         if defines not in self._programs:
-            vertex, fragment = (defines + (HERE / f"splatting.{kind}").read_text() for kind in ("vert", "frag"))
+            vertex, fragment = (defines + gl.source(f"splatting.{kind}") for kind in ("vert", "frag"))
             self._programs[defines] = self.device.ctx.program(
                 vertex_shader=vertex, fragment_shader=None if varyings else fragment, varyings=tuple(varyings)
             )
