@@ -25,6 +25,9 @@ from ibr_ref.oracle.referees.shadows.transform import gamma
 
 Floats = NDArray[np.float64]
 
+ANY = 2.0**128
+"""Larger than any float32 (IEEE 754-2019, table 3.5: emax = 127), and, unlike infinity, 0 times it is 0."""
+
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
@@ -157,7 +160,7 @@ def linear(triangles: Triangles, found: Fragments, corner: Bounded) -> Bounded:
     """(n,) a varying that is linear in the window, from its values (T, 3)."""
     plane, mixer, t = Plane.of(triangles, corner), Mixer.of(triangles, found), found.triangle
     moved = mixer.moved(plane.gradient[0][t], plane.gradient[1][t])
-    return Bounded(plane.at(found), moved + plane.own(mixer), corner.device)
+    return _known(plane.at(found), moved + plane.own(mixer), corner.device)
 
 
 def perspective(triangles: Triangles, found: Fragments, corners: Sequence[Bounded], w: Bounded) -> list[Bounded]:
@@ -181,5 +184,11 @@ def perspective(triangles: Triangles, found: Fragments, corners: Sequence[Bounde
         moved = mixer.moved(*(above.gradient[k][t] - u * gradient_D[k] for k in range(2)))
         with np.errstate(divide="ignore", invalid="ignore"):
             error = (moved + above.own(mixer) + np.abs(u) * own_D) / room + device.quotient * UNIT * np.abs(u)
-        result.append(Bounded(u, np.where((room > 0.0) & np.isfinite(error), error, np.inf), device))
+        result.append(_known(u, np.where(room > 0.0, error, np.inf), device))
     return result
+
+
+def _known(value: Floats, error: Floats, device: Device) -> Bounded:
+    """(n,) with the bounds; any number where there is none: a triangle seen edge-on has no weights, but may be drawn."""
+    known = np.isfinite(value) & np.isfinite(error)
+    return Bounded(np.where(known, value, 0.0), np.where(known, error, ANY), device)
