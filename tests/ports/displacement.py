@@ -1,8 +1,8 @@
 """Protruded displacement mapping on OpenGL: the same inputs as `ibr_ref.displacement.render`, in float32 GLSL.
 
 The scene is that of an exported case, as case_folder.py reads it; nothing of `ibr_ref` is imported. Ported is
-method="protruded" with all intervals, domains, faces and depths, normal map, facade map and self-shadow. Per polygon the host
-does in float64 what an application does once per object: matrices, the eye and the light in patch space, the choice of the
+method="protruded" with all intervals, domains, faces and depths, normal map, facade map and self-shadow. Per polygon the
+host does in float64 what an application does once per object: matrices, the eye and the light in patch space, the choice of the
 faces; all else happens in the shaders.
 """
 
