@@ -15,6 +15,7 @@ from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.referees.shadows import places
 from ibr_ref.oracle.referees.shadows.maps import Map, rendered
 from ibr_ref.oracle.referees.shadows.places import Place
+from ibr_ref.oracle.referees.shadows.project import Coordinate, coordinate
 from ibr_ref.oracle.referees.shadows.surface import Seen, see
 from ibr_ref.oracle.referees.shadows.transform import Lens
 from ibr_ref.oracle.referees.shadows.warp import Source, between, pair, place_of, warped
@@ -29,6 +30,8 @@ class Inputs:
     case: Any
     device: Device
     handed: Handed = field(default_factory=dict)
+    alone: Inputs | None = None
+    """The same with nothing handed in: what does not depend on that is made there, once for all submissions."""
 
     @property
     def direct(self) -> bool:
@@ -54,7 +57,14 @@ class Inputs:
     @cached_property
     def seen(self) -> Seen:
         """What the camera may see; no stage array holds it."""
-        return see(self.case, self.device)
+        return see(self.case, self.device) if self.alone is None else self.alone.seen
+
+    @cached_property
+    def coordinates(self) -> list[Coordinate]:
+        """Of what the camera may see, on the map of each sample."""
+        if self.alone is not None:
+            return self.alone.coordinates
+        return [coordinate(lens, self.seen.world) for lens in self.lenses]
 
     def own(self, name: str, *, sampled: bool = True) -> Floats | None:
         """A port's array in float64, with an axis of samples first; None if it was not handed in."""
@@ -139,14 +149,15 @@ class Inputs:
 
     def made_rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """From the nine maps."""
+        targets = self.row_grids(sample, place)
+        return [
+            pair(self.sources(place, k), place[0].fraction, target, self.nearest) for k, target in enumerate(targets)
+        ]
+
+    def sources(self, place: tuple[Place, Place], row: int) -> list[Source]:
+        """The two maps of a row."""
         x, y = place
-        result = []
-        for k, target in enumerate(self.row_grids(sample, place)):
-            sources = [
-                Source(self.images[y.cell + k, x.cell + n], self.controls[y.cell + k, x.cell + n]) for n in range(2)
-            ]
-            result.append(pair(sources[0], sources[1], x.fraction, target, self.nearest))
-        return result
+        return [Source(self.images[y.cell + row, x.cell + n], self.controls[y.cell + row, x.cell + n]) for n in (0, 1)]
 
     @property
     def nearest(self) -> bool:
@@ -157,7 +168,7 @@ class Inputs:
         """(S, S) from the rows."""
         grids, rows = self.row_grids(sample, place), self.rows(sample, place)
         sources = [Source(row, grid) for row, grid in zip(rows, grids, strict=True)]
-        return pair(sources[0], sources[1], place[1].fraction, self.grid(sample, place), self.nearest)
+        return pair(sources, place[1].fraction, self.grid(sample, place), self.nearest)
 
     def map(self, sample: int) -> Map:
         """What is projected for a sample."""

@@ -17,7 +17,7 @@ from ibr_ref.oracle.referees.shadows.branches import Branches, branches, in_shad
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement
 from ibr_ref.oracle.referees.shadows.maps import VISIBLE
-from ibr_ref.oracle.referees.shadows.project import Shadow, coordinate, handed, shadow
+from ibr_ref.oracle.referees.shadows.project import Shadow, handed, shadow
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -62,8 +62,7 @@ def projected(given: Inputs) -> Judgement | None:
     fragments, nothing = _agreeing(given)
     legal = {name: fragments.copy() for name in names}
     undecided, width = seen.wild.copy(), np.zeros(len(seen.empty))
-    for i, lens in enumerate(given.lenses):
-        at = coordinate(lens, seen.world)
+    for i, at in enumerate(given.coordinates):
         if coords is not None:
             own = coords[i].reshape(-1, 3)
             nothing &= (own == 0.0).all(axis=1)
@@ -129,8 +128,7 @@ def _outcomes(given: Inputs) -> Branches:
         shadows = [exact(s.reshape(-1)[seen.pixel], given.device) for s in own]
         return in_shadow(seen, accumulated(shadows, given.case.params.accumulation == "unorm8"))
     coords, outcomes = given.own("project.coord"), []
-    for i, lens in enumerate(given.lenses):
-        at = coordinate(lens, seen.world)
+    for i, at in enumerate(given.coordinates):
         if coords is not None:
             at = handed(coords[i].reshape(-1, 3)[seen.pixel], at.w)
         outcomes.append(shadow(given.case, given.map(i), at, seen.caster))
