@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -78,6 +79,17 @@ class Inputs:
         array = np.asarray(self.case.frame.stages[name]).astype(np.float64)
         return array[None] if sampled and self.count == 1 else array
 
+    def fed(self, name: str, *, sampled: bool = True) -> Floats | None:
+        """A port's array as an input: None too where some of it is no number, for then its own stage is wrong."""
+        array = self.own(name, sampled=sampled)
+        return array if array is not None and np.isfinite(array).all() else None
+
+    def spoiled(self, sample: int, names: Sequence[str]) -> bool:
+        """Whether one of these arrays was handed in for a sample, and is of no use."""
+        arrays = [self.own(name, sampled=name.startswith("warp.")) for name in names]
+        parts = [a[sample] if n.startswith("warp.") else a for n, a in zip(names, arrays, strict=True) if a is not None]
+        return not all(np.isfinite(part).all() for part in parts)
+
     @cached_property
     def positions(self) -> Floats:
         """(3, 3, 2) as the case gives them."""
@@ -86,7 +98,7 @@ class Inputs:
     @cached_property
     def controls(self) -> Bounded:
         """(3, 3, R, C, 2): the port's own, or as they are given."""
-        own = self.own("controls", sampled=False)
+        own = self.fed("controls", sampled=False)
         if own is not None:
             return exact(own, self.device)
         return uploaded(self.reference("controls", sampled=False), self.device)
@@ -103,7 +115,7 @@ class Inputs:
 
     def places(self, sample: int) -> list[tuple[Place, Place]]:
         """The cells and fractions along x and y that a sample may find, the likeliest first."""
-        own_cell, own_fraction = self.own("warp.cell"), self.own("warp.fraction")
+        own_cell, own_fraction = self.own("warp.cell"), self.fed("warp.fraction")
         if own_cell is not None and not np.isin(own_cell[sample], (0.0, 1.0)).all():
             own_cell = None
         return place_of(
@@ -115,7 +127,7 @@ class Inputs:
 
     def row_grids(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """Two (R, C, 2)."""
-        own = self.own("warp.row_grids")
+        own = self.fed("warp.row_grids")
         if own is not None:
             return [exact(grid, self.device) for grid in own[sample]]
         return self.made_row_grids(place)
@@ -130,7 +142,7 @@ class Inputs:
 
     def grid(self, sample: int, place: tuple[Place, Place]) -> Bounded:
         """(R, C, 2)."""
-        own = self.own("warp.grid")
+        own = self.fed("warp.grid")
         if own is not None:
             return exact(own[sample], self.device)
         return self.made_grid(sample, place)
@@ -142,7 +154,7 @@ class Inputs:
 
     def rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """Two (S, S)."""
-        own = self.own("warp.rows")
+        own = self.fed("warp.rows")
         if own is not None:
             return [exact(row, self.device) for row in own[sample]]
         return self.made_rows(sample, place)
@@ -174,7 +186,8 @@ class Inputs:
         """What is projected for a sample."""
         own = self.own("warp.image")
         if own is not None:
-            return Map.of(exact(own[sample], self.device))
+            bad = ~np.isfinite(own[sample])
+            return Map.of(exact(np.where(bad, self.reference("warp.image")[sample], own[sample]), self.device), bad)
         if self.direct:
             at = places.offset(self.case, self.device)
             return rendered(self.case, self.lenses[sample], at, self.reference("warp.image")[sample])

@@ -103,9 +103,10 @@ def sums(given: Inputs) -> Judgement | None:
     found = np.asarray(given.handed["accumulate.shadow"]).astype(np.float64)
     own, name = given.own("project.shadow"), "accumulate.shadow"
     if own is not None:
-        shadows = [exact(s, given.device) for s in own]
+        shadows = [exact(_numbers(s), given.device) for s in own]
         bound = accumulated(shadows, given.case.params.accumulation == "unorm8")
-        right, width = bound.allows(found), np.broadcast_to(2.0 * bound.error, found.shape)
+        right = bound.allows(found) | ~np.isfinite(own.sum(axis=0))  # what is no number is wrong before
+        width = np.broadcast_to(2.0 * bound.error, found.shape)
         return judgement("accumulate", "pixel", [name], [right], width, replayed=["project.shadow"])
     seen, outcomes = given.seen, _outcomes(given)
     pixel = seen.pixel[outcomes.fragment]
@@ -121,11 +122,16 @@ def sums(given: Inputs) -> Judgement | None:
     )
 
 
+def _numbers(array: Floats) -> Floats:
+    """A port's array with 0 for what is no number: such elements are skipped."""
+    return np.where(np.isfinite(array), array, 0.0)
+
+
 def _outcomes(given: Inputs) -> Branches:
     """What the sum may be, from the port's own shadows or coordinates if it has handed them in."""
     seen, own = given.seen, given.own("project.shadow")
     if own is not None:
-        shadows = [exact(s.reshape(-1)[seen.pixel], given.device) for s in own]
+        shadows = [exact(_numbers(s).reshape(-1)[seen.pixel], given.device) for s in own]
         return in_shadow(seen, accumulated(shadows, given.case.params.accumulation == "unorm8"))
     coords, outcomes = given.own("project.coord"), []
     for i, at in enumerate(given.coordinates):
@@ -141,7 +147,7 @@ def colors(given: Inputs) -> Judgement | None:
         return None
     seen, scene, own = given.seen, given.case.scene, given.own("accumulate.shadow", sampled=False)
     if own is not None:
-        outcomes = in_shadow(seen, exact(own.reshape(-1)[seen.pixel], given.device))
+        outcomes = in_shadow(seen, exact(_numbers(own).reshape(-1)[seen.pixel], given.device))
     else:
         outcomes = _outcomes(given)
     color = resolve.colors(scene, seen, outcomes.fragment, outcomes.turned, outcomes.shadow)
@@ -150,6 +156,8 @@ def colors(given: Inputs) -> Judgement | None:
     legal = resolve.allows(color, shown.reshape(-1, 3)[pixel]) & fragments[outcomes.fragment]
     right = seen.any_of(pixel, legal, nothing & resolve.allows_nothing(scene, seen, shown, None))
     right[seen.pixel[outcomes.crowded]] = True
+    if own is not None:
+        right |= ~np.isfinite(own.reshape(-1))
     undecided, width = spread(given.case, seen, outcomes, color)
     return judgement(
         "resolve",
