@@ -76,13 +76,4 @@ def _export(name: str, folder: Path, force: bool) -> None:
         for each in names:
             step(each)
             case = cases.build(each)
-            if name == "all":
-                _make(folder)
             files.export(case, folder / each if name == "all" else folder, force=force)
-
-
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise OSError(f"{folder}: cannot be made ({error.strerror})") from None

@@ -40,6 +40,8 @@ def biases(case: Case, handed: Handed, image: Judgement, device: Device, *, wron
     a wrong one: those that explain more than half of the squared difference.
     """
     color = np.asarray(handed["color"])
+    if not wrong and color.dtype != np.uint8:
+        return ()
     found = []
     for parameter in referee(case.method).parameters(case):
         bias = _bias(case, parameter, color, image, device)

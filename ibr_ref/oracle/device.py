@@ -58,7 +58,7 @@ class Device:
         return 2.0**-self.subpixel_bits if self.subpixel_any else 0.0
 
 
-_OPENGL = "OpenGL 4.6, Floating-Point Computation: results are accurate to about 1 part in 10^5; GLSL 4.60, Range and Precision, is tighter"
+_OPENGL = "OpenGL 4.6, Floating-Point Computation: accurate to about 1 part in 10^5 (GLSL 4.60 is tighter)"
 _VULKAN = 'Vulkan 1.3, appendix "Precision and Operation of SPIR-V Instructions"'
 _WGSL = "WGSL, section 15.7.4 (accuracy of concrete floating point expressions)"
 _D3D = "Direct3D 11.3 functional specification"
@@ -194,9 +194,9 @@ GL = Device(
         "quotient": f"{_OPENGL}; taken here as a reciprocal and a product, each a rounding and 2 ULP",
         "root": f"{_OPENGL}; taken here as an inverse root and a reciprocal, each a rounding and 2 ULP",
         "weight_step": "OpenGL 4.6, Texture Minification, gives no precision of weights; 8 bits on desktop implementations",
-        "subpixel_bits": "OpenGL 4.6, Implementation Dependent Values: SUBPIXEL_BITS at least 4, 8 on desktop implementations",
+        "subpixel_bits": "OpenGL 4.6, Implementation Dependent Values: SUBPIXEL_BITS at least 4, 8 on desktops",
         "subpixel_any": "OpenGL 4.6, Basic Polygon Rasterization: the rounding of window positions is not specified",
-        "unsnapped": "OpenGL 4.6, Basic Polygon Rasterization: interpolation by areas of the triangle, whether snapped is not said",
+        "unsnapped": "OpenGL 4.6, Basic Polygon Rasterization: by areas of the triangle, snapped or not is not said",
         "splat_border": f"OpenGL 4.6, Points: a sprite's size has a granularity, here 1/256; quads: {_CENTRE}",
         "minus_one": "OpenGL 4.6, Primitive Clipping: -w <= z <= w, the initial clip control",
         "depth_step": "OpenGL 4.6, Coordinate Transformations: window depth may be fixed point; DEPTH_COMPONENT24",

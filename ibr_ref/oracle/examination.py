@@ -34,9 +34,15 @@ class Examination:
 
 
 def judge(case: Case, handed: Handed, device: Device) -> list[Judgement]:
-    """All that one device allows: the stages in order, each on the port's own inputs, then "image" if a colour is there."""
+    """All that one device allows: the stages in order, each on the port's own inputs, then "image" if a colour is there.
+
+    A stage of which only the picture was handed in, and nothing that it was made of, is not judged as a stage: that is
+    the picture's judgement.
+    """
     method = referee(case.method)
-    judgements = method.judge_stages(case, device, handed)
+    judgements = [
+        j for j in method.judge_stages(case, device, handed) if j.replayed or {*j.arrays} - {"color", "depth"}
+    ]
     return [*judgements, method.judge_image(case, device, handed)] if "color" in handed else judgements
 
 

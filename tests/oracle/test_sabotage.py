@@ -17,7 +17,7 @@ from ibr_ref import oracle
 from ibr_ref.oracle import Case
 from ibr_ref.oracle.verdict import Outcome
 
-CASE, OTHER = "splatting-lamp", "splatting-ball"
+CASE, OTHER, SAME_SIZE = "splatting-lamp", "splatting-ball", "splatting-shelves"
 Maker = Callable[[Path, Case], None]
 SABOTAGE: dict[str, tuple[Outcome, str, Maker]] = {}
 """By name: the right outcome, what the words must say, and what writes the submission."""
@@ -85,11 +85,6 @@ def _(folder: Path, case: Case) -> None:
 @submission("depth alone", INCONCLUSIVE, "neither a final image nor a stage")
 def _(folder: Path, case: Case) -> None:
     np.save(folder / "depth.npy", case.frame.depth)
-
-
-@submission("stale: another case's image", INCONCLUSIVE, "splatting-shelves")
-def _(folder: Path, case: Case) -> None:
-    np.save(folder / "color.npy", oracle.build("splatting-shelves").frame.color)
 
 
 @submission("a truncated array", INCONCLUSIVE, "color.npy")
@@ -188,6 +183,14 @@ def test_the_right_answer(name: str, case: Case, tmp_path: Path) -> None:
     verdict = oracle.check(case, oracle.load_submission(folder, case)).verdict
     assert verdict.outcome is outcome, verdict.words()
     assert words in verdict.words()
+
+
+def test_another_cases_image_is_stale(tmp_path: Path) -> None:
+    np.save(tmp_path / "color.npy", oracle.build(SAME_SIZE).frame.color)
+    other = oracle.build(OTHER)
+    verdict = oracle.check(other, oracle.load_submission(tmp_path, other)).verdict
+    assert verdict.outcome is INCONCLUSIVE, verdict.words()
+    assert f"the image of another case, '{SAME_SIZE}'" in verdict.words()
 
 
 def test_the_honest_one_passes(case: Case, tmp_path: Path) -> None:

@@ -1,16 +1,14 @@
 """Protruded displacement mapping on OpenGL: the same inputs as `ibr_ref.displacement.render`, in float32 GLSL.
 
-The scene is duck-typed (`polygons`, `camera`, `light`, `background`), nothing of `ibr_ref` is imported. Ported are
-method="protruded", interval="paper", domain="clip", faces "auxiliary" and "base", depth "displaced" and "polygon", with
-optional normal map, facade map and self-shadow. Per polygon the host does in float64 what an application does once per
-object: matrices, the eye and the light in patch space, the choice of the faces; all else happens in the shaders.
+The scene is that of an exported case, as case_folder.py reads it; nothing of `ibr_ref` is imported. Ported is
+method="protruded" with all intervals, domains, faces and depths, normal map, facade map and self-shadow. Per polygon the
+host does in float64 what an application does once per object: matrices, the eye and the light in patch space, the choice of the
+faces; all else happens in the shaders.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any
 
 import moderngl
@@ -18,7 +16,6 @@ import numpy as np
 
 from tests.ports import gl
 
-HERE = Path(__file__).parent
 FAST = {"color": (4, "f1")}
 STAGES = {
     "color": (4, "f4"),
@@ -38,19 +35,11 @@ FACES = np.array(
         [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)],
         [(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)],
         [(0, 1, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1)],
+        [(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
     ],
     dtype=np.float32,
 )
-"""Corners a, b, c, d of the base and the four side faces in patch space; the index is the face number."""
-
-
-@dataclass
-class Frame:
-    """What a port hands in: `color` (H, W, 3), `depth` (H, W), and the stages by the specification's names."""
-
-    color: np.ndarray
-    depth: np.ndarray
-    stages: dict[str, np.ndarray] = field(default_factory=dict)
+"""Corners a, b, c, d of the base, the four side faces and the top in patch space; the index is the face number."""
 
 
 @dataclass
@@ -90,16 +79,16 @@ class Prepared:
         """Time of one frame, from the first call to the return of glFinish, without read-back."""
         return gl.frame_seconds(self.device, self.draw)
 
-    def read(self) -> Frame:
+    def read(self) -> gl.Frame:
         """The frame that was drawn last."""
         color = self.target.read("color")
         color = color[..., :3] / 255.0 if color.dtype == np.uint8 else color[..., :3].astype(np.float64)
         depth = self.target.read_depth()
         if not self.stages:
-            return Frame(color=color, depth=depth.astype(np.float64))
+            return gl.Frame(color=color, depth=depth.astype(np.float64))
         shown = _stage_arrays(self.target)
         depth = np.where(shown["march.hit_index"] < 0, 1.0, depth.astype(np.float64))
-        return Frame(color=color, depth=depth, stages=self.vertices | shown)
+        return gl.Frame(color=color, depth=depth, stages=self.vertices | shown)
 
     def release(self) -> None:
         """Give everything back to the driver."""
@@ -125,7 +114,7 @@ class Port:
         self.device = device or gl.create_device()
         self._programs: dict[str, moderngl.Program] = {}
 
-    def render(self, scene: Any, params: Any, *, stages: bool = True) -> Frame:
+    def render(self, scene: Any, params: Any, *, stages: bool = True) -> gl.Frame:
         """One frame, read back."""
         prepared = self.prepare(scene, params, stages=stages)
         try:
@@ -140,7 +129,7 @@ class Port:
         `packed`: the height texture holds four neighbours a texel, read by one texelFetch and mixed in the shader, instead
         of the sampler's linear filter: four times the memory, up to 15 % faster on llvmpipe.
         """
-        _check(scene, params)
+        _check(scene, params, packed)
         attachments = STAGES if stages else FAST
         target = gl.create_target(self.device, int(scene.camera.width), int(scene.camera.height), attachments)
         target.clears = {
@@ -153,10 +142,10 @@ class Port:
         captured: list[tuple[np.ndarray, np.ndarray]] = []
         for number, polygon in enumerate(scene.polygons):
             frame = _PatchFrame.of(polygon, scene)
-            faces = frame.faces(params.faces)
-            if faces:
+            faces = frame.faces(params)
+            if len(faces):
                 draws.append(self._polygon(frame, number, faces, _Variant(params, stages, packed)))
-            if stages and faces:
+            if stages and len(faces):
                 captured.append(self._capture(target, draws[-1], faces))
         vertices = {
             "vertex.clip": np.concatenate([clip for clip, _ in captured] or [np.zeros((0, 4), np.float32)]),
@@ -164,11 +153,11 @@ class Port:
         }
         return Prepared(device=self.device, target=target, draws=draws, stages=stages, vertices=vertices)
 
-    def _polygon(self, frame: _PatchFrame, number: int, faces: Sequence[int], variant: _Variant) -> _Draw:
+    def _polygon(self, frame: _PatchFrame, number: int, faces: np.ndarray, variant: _Variant) -> _Draw:
         """Buffers, textures and program of one polygon."""
         ctx = self.device.ctx
         program = self._program(_defines(frame, variant, self.device.zero_to_one))
-        vertices = ctx.buffer(_vertex_bytes(faces))
+        vertices = ctx.buffer(faces.tobytes())
         indices = ctx.buffer(_quad_indices(len(faces)).tobytes())
         names = ("in_patch", "in_face") if variant.stages else ("in_patch",)  # what no shader reads has no location
         layout = [(vertices, "3f 1i" if variant.stages else "3f 4x", *names)]
@@ -182,21 +171,19 @@ class Port:
     def _program(self, defines: str) -> moderngl.Program:
         """The linked program for these #defines."""
         if defines not in self._programs:
-            vertex, fragment = ((HERE / f"displacement.{kind}").read_text() for kind in ("vert", "frag"))
-            self._programs[defines] = self.device.ctx.program(
-                vertex_shader=defines + vertex, fragment_shader=defines + fragment
-            )
+            vertex, fragment = (defines + gl.source(f"displacement.{kind}") for kind in ("vert", "frag"))
+            self._programs[defines] = self.device.ctx.program(vertex_shader=vertex, fragment_shader=fragment)
         return self._programs[defines]
 
-    def _capture(self, target: gl.Target, draw: _Draw, faces: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+    def _capture(self, target: gl.Target, draw: _Draw, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Clip (n, 4), before y is negated, and patch positions (n, 3) of the corners, as the vertex shader made them."""
         ctx = self.device.ctx
         defines = _header({"CAPTURE": 1, "ZERO_TO_ONE": 1})
         if defines not in self._programs:
             self._programs[defines] = ctx.program(
-                vertex_shader=defines + (HERE / "displacement.vert").read_text(), varyings=["clip", "patch_position"]
+                vertex_shader=defines + gl.source("displacement.vert"), varyings=["clip", "patch_position"]
             )
-        source = ctx.buffer(_vertex_bytes(faces))
+        source = ctx.buffer(faces.tobytes())
         result = ctx.buffer(reserve=4 * len(faces) * 7 * 4)
         vao = ctx.vertex_array(self._programs[defines], [(source, "3f 1i", "in_patch", "in_face")])
         target.fbo.use()  # a draw call wants a complete frame buffer, even if nothing is rasterized
@@ -240,13 +227,25 @@ class _PatchFrame:
         eye = into_patch(np.asarray(scene.camera.eye, float))
         return cls(polygon, scene, normal, rows, eye, into_patch(light_world), light_world)
 
-    def faces(self, which: str) -> list[int]:
-        """Numbers of the faces that turn away from the eye (the base: towards it)."""
+    def faces(self, params: Any) -> np.ndarray:
+        """(F, 4) patch positions and numbers of the corners of the faces that turn away from the eye."""
         u, v, h, w = self.eye
-        base = [0] if h > 0 else []
-        if which == "base":
-            return base
-        return base + [face for face, away in enumerate((u > 0, u < w, v > 0, v < w), start=1) if away]
+        turned = [h > 0, u > 0, u < w, v > 0, v < w, params.interval == "volume" and h < w]
+        numbers = [number for number, away in enumerate(turned) if away]
+        if params.faces != "auxiliary":
+            numbers = [0] if params.faces == "extended" or turned[0] else []
+        faces = np.zeros((len(numbers), 4), dtype=[("patch", np.float32, 3), ("face", np.int32)])
+        faces["patch"] = self._extended() if params.faces == "extended" else FACES[numbers]
+        faces["face"] = np.asarray(numbers, np.int32)[:, None]
+        return faces
+
+    def _extended(self) -> np.ndarray:
+        """(1, 4, 3) corners of the rectangle of the base's plane that covers all of the volume, as the eye sees it."""
+        corners = FACES[5].astype(float)
+        towards = self.eye[:3] - self.eye[3] * corners
+        shadows = corners[:, :2] - towards[:, :2] / towards[:, 2:]
+        (u0, v0), (u1, v1) = np.minimum(shadows.min(axis=0), 0.0), np.maximum(shadows.max(axis=0), 1.0)
+        return np.array([[(u0, v0, 0.0), (u1, v0, 0.0), (u1, v1, 0.0), (u0, v1, 0.0)]])
 
     def uniforms(self, number: int) -> bytes:
         """The std140 block `Polygon` of both shaders."""
@@ -288,18 +287,12 @@ def _defines(frame: _PatchFrame, variant: _Variant, zero_to_one: bool) -> str:
         "HAS_SPECULAR": frame.scene.light.specular != 0,
         "POLYGON_DEPTH": params.depth == "polygon",
         "PACKED_HEIGHTS": variant.packed,
+        "REPEAT": frame.polygon.domain == "repeat",
+        "VOLUME": params.interval == "volume",
         "STAGES": variant.stages,
         "ZERO_TO_ONE": zero_to_one,
     }
     return _header(defines | {name: 1 for name, present in flags.items() if present})
-
-
-def _vertex_bytes(faces: Sequence[int]) -> bytes:
-    """Interleaved patch position (3 float32) and face number (int32), four corners a face."""
-    rows = np.zeros((len(faces), 4), dtype=[("patch", np.float32, 3), ("face", np.int32)])
-    rows["patch"] = FACES[list(faces)]
-    rows["face"] = np.asarray(faces, np.int32)[:, None]
-    return rows.tobytes()
 
 
 def _quad_indices(count: int) -> np.ndarray:
@@ -313,12 +306,13 @@ def _textures(device: gl.Device, polygon: Any, variant: _Variant) -> list[modern
     For the timed variant colours that are multiples of 1/255 are kept as 8-bit textures, as an application would.
     """
     unused = np.zeros((1, 1, 3))
+    repeat = "repeat" if polygon.domain == "repeat" else "clamp"
     images = [polygon.color_map, polygon.normal_map, polygon.facade_map]
     if variant.packed:
         textures = [gl.upload(device, _packed(polygon.height_map), filtered=False)]
     else:
-        textures = [gl.upload(device, polygon.height_map)]
-    for image, wrap in zip(images, ("clamp", "clamp", "repeat"), strict=True):
+        textures = [gl.upload(device, polygon.height_map, wrap=repeat)]
+    for image, wrap in zip(images, (repeat, repeat, "repeat"), strict=True):
         image = unused if image is None else np.asarray(image, float)
         eight_bit = not variant.stages and bool(np.all(np.abs(255.0 * image - np.rint(255.0 * image)) < 1e-6))
         textures.append(gl.upload(device, image, dtype="f1" if eight_bit else "f4", wrap=wrap))
@@ -352,17 +346,9 @@ def _stage_arrays(target: gl.Target) -> dict[str, np.ndarray]:
     }
 
 
-def _check(scene: Any, params: Any) -> None:
+def _check(scene: Any, params: Any, packed: bool) -> None:
     """Refuse what is not ported."""
-    allowed = {
-        "method": ("protruded",),
-        "interval": ("paper",),
-        "faces": ("auxiliary", "base"),
-        "depth": ("displaced", "polygon"),
-    }
-    for name, values in allowed.items():
-        if getattr(params, name) not in values:
-            raise ValueError(f"{name} = {getattr(params, name)!r}: the port allows {', '.join(values)}")
-    for polygon in scene.polygons:
-        if polygon.domain != "clip":
-            raise ValueError(f"domain = {polygon.domain!r}: the port allows clip")
+    if params.method != "protruded":
+        raise ValueError(f"method = {params.method!r}: the port allows protruded")
+    if packed and any(polygon.domain == "repeat" for polygon in scene.polygons):
+        raise ValueError("domain = 'repeat': the port allows clip with packed heights")

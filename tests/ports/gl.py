@@ -10,6 +10,7 @@ import ctypes
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import moderngl
 import numpy as np
@@ -50,6 +51,15 @@ class Entry:
 
 
 @dataclass
+class Frame:
+    """What a port hands in: `color` (H, W, 3), `depth` (H, W), and the stages by the specification's names."""
+
+    color: np.ndarray
+    depth: np.ndarray
+    stages: dict[str, np.ndarray] = field(default_factory=dict)
+
+
+@dataclass
 class Device:
     """A context that is current on this thread, and what it turned out to be."""
 
@@ -62,6 +72,11 @@ class Device:
     def renderer(self) -> str:
         """GL_RENDERER and GL_VERSION in one line."""
         return f"{self.ctx.info['GL_RENDERER']}, {self.ctx.info['GL_VERSION']}"
+
+
+def source(name: str) -> str:
+    """The GLSL of a file beside this one, without `#version` and #defines."""
+    return (Path(__file__).parent / name).read_text(encoding="utf-8")
 
 
 def create_device(*, clip_control: bool = True) -> Device:

@@ -9,37 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import moderngl
 import numpy as np
 
 from tests.ports import gl
-
-HERE = Path(__file__).parent
-
-
-@dataclass(frozen=True)
-class Sample:
-    """A light sample: where it is, and where the object would stand for the light's centre to see it so."""
-
-    position: np.ndarray
-    offset: np.ndarray
-
-
-def light_samples(scene: Any, params: Any) -> list[Sample]:
-    """The samples in order, positions (3,) and offsets (2,) in float64."""
-    centre, (a, b) = np.asarray(scene.light.position, float), np.asarray(scene.light.half_edges, float)
-    if np.ndim(params.light_samples) == 2:
-        positions = list(np.asarray(params.light_samples, float))
-    else:
-        steps = (-2.0 / 3.0, 0.0, 2.0 / 3.0) if params.light_samples == 9 else (-2.0 / 3.0, 2.0 / 3.0)
-        around = [centre + i * a + j * b for j in steps for i in steps if i or j]
-        positions = [centre] + (around if params.light_samples > 1 else [])
-    axes = np.asarray(scene.offset_axes, float).T
-    moves = [np.linalg.lstsq(axes, position - centre, rcond=None)[0] for position in positions]
-    return [Sample(p, np.asarray(scene.offset, float) - move) for p, move in zip(positions, moves, strict=True)]
 
 
 def place_in_cell(positions: np.ndarray, offset: np.ndarray) -> tuple[list[int], list[float]]:
@@ -63,7 +38,7 @@ class Programs:
         if key not in self._linked:
             flags = (*flags, "ZERO_TO_ONE") if self._device.zero_to_one else flags
             head = "#version 450 core\n" + "".join(f"#define {flag}\n" for flag in flags)
-            sources = [head + (HERE / f"shadows_{name}").read_text() for name in (f"{vertex}.vert", f"{fragment}.frag")]
+            sources = [head + gl.source(f"shadows_{name}") for name in (f"{vertex}.vert", f"{fragment}.frag")]
             self._linked[key] = self._device.ctx.program(vertex_shader=sources[0], fragment_shader=sources[1])
         return self._linked[key]
 
@@ -131,9 +106,8 @@ class CasterMaps:
             self.texture = self._target.texture
         self._owned = [vao, vertices, indices, self._target]
 
-    def draw(self, position: np.ndarray, offset: np.ndarray) -> None:
-        """The map of the object at `offset`, seen from a sample at `position`."""
-        camera = self._scene.light.camera(self._size, position)
+    def draw(self, camera: Any, offset: np.ndarray) -> None:
+        """The map of the object at `offset`, as the camera of a light sample sees it."""
         self._program["clip_from_view"].write(column_major(camera.clip_from_view))
         self._program["view_from_world"].write(column_major(camera.view_from_world))
         self._program["offset"].value = offset_in_world(self._scene, offset)

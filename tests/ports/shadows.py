@@ -1,6 +1,7 @@
 """Shadows by image warping on OpenGL: the same inputs as `ibr_ref.shadows.render`, in float32 GLSL.
 
-Scene, parameters and prepared maps are duck-typed, nothing of `ibr_ref` is imported. Ported are method="warp" and "direct",
+Scene, parameters and prepared maps are those of an exported case, as case_folder.py reads it; nothing of `ibr_ref` is
+imported. Ported are method="warp" and "direct",
 masks and depths, both policies, every way to compare, and both ways to accumulate. The passes of a frame:
 
 1. receivers and caster into two attachments: world position and kind; colour and max(0, n . l);
@@ -14,7 +15,7 @@ filters, colours and n . l are bytes, and so are masks, if wished: what an appli
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import moderngl
@@ -25,11 +26,9 @@ from tests.ports.shadow_maps import (
     CasterMaps,
     Pass,
     Programs,
-    Sample,
     WarpedMaps,
     column_major,
     create_warped_maps,
-    light_samples,
     offset_in_world,
     place_in_cell,
 )
@@ -39,24 +38,12 @@ STAGES = {"place": (4, "f4"), "surface": (4, "f4")}
 
 
 @dataclass
-class Frame:
-    """What a port hands in: `color` (H, W, 3), `depth` (H, W), and the stages by the specification's names."""
-
-    color: np.ndarray
-    depth: np.ndarray
-    stages: dict[str, np.ndarray] = field(default_factory=dict)
-
-
-@dataclass
 class Prepared:
     """A scene with its maps uploaded and its programs linked: `draw` is a whole frame, as often as one likes."""
 
     device: gl.Device
     scene: Any
     params: Any
-    samples: list[Sample]
-    positions: np.ndarray | None
-    """Of the nine maps; None: a map is rendered for every sample."""
     source: WarpedMaps | CasterMaps
     target: gl.Target
     surface: moderngl.VertexArray
@@ -72,7 +59,7 @@ class Prepared:
         """Submit a frame."""
         self._draw_surface()
         self.accumulated.begin()
-        for sample in self.samples:
+        for sample in self.scene.light_samples:
             self._draw_map(sample)
             self._set_projection(self.project.program, sample)
             self.accumulated.fbo.use()
@@ -83,7 +70,7 @@ class Prepared:
 
     def draw_maps(self) -> None:
         """The maps of all samples alone."""
-        for sample in self.samples:
+        for sample in self.scene.light_samples:
             self._draw_map(sample)
 
     def seconds(self) -> float:
@@ -94,12 +81,12 @@ class Prepared:
         """The same of the maps alone."""
         return gl.frame_seconds(self.device, self.draw_maps)
 
-    def read(self) -> Frame:
+    def read(self) -> gl.Frame:
         """The frame that was drawn last; its stages are drawn anew, one sample after another."""
         color = self.picture.read("color")
         color = color[..., :3] / 255.0 if color.dtype == np.uint8 else color[..., :3].astype(np.float64)
         depth = self.target.read_depth().astype(np.float64)
-        return Frame(color=color, depth=depth, stages={} if self.coordinates is None else self._stages())
+        return gl.Frame(color=color, depth=depth, stages={} if self.coordinates is None else self._stages())
 
     def read_map(self) -> np.ndarray:
         """(S, S) the last sample's map, as it was drawn last."""
@@ -122,17 +109,17 @@ class Prepared:
         program["light"].value = tuple(np.asarray(self.scene.light.position, float).tolist())
         self.surface.render(moderngl.TRIANGLES)
 
-    def _draw_map(self, sample: Sample) -> None:
+    def _draw_map(self, sample: Any) -> None:
         if isinstance(self.source, CasterMaps):
-            self.source.draw(sample.position, self.scene.offset)
+            self.source.draw(sample.camera, self.scene.offset)
         else:
-            self.source.draw(*place_in_cell(self.positions, sample.offset))
+            self.source.draw(*place_in_cell(self.scene.maps.positions, sample.seen_offset))
 
-    def _set_projection(self, program: moderngl.Program, sample: Sample) -> None:
-        camera = self.scene.light.camera(self.params.map_size, sample.position)
+    def _set_projection(self, program: moderngl.Program, sample: Any) -> None:
+        camera = sample.camera
         program["clip_from_view"].write(column_major(camera.clip_from_view))
         program["view_from_world"].write(column_major(camera.view_from_world))
-        for name, value in (("bias", float(self.params.bias)), ("alpha", 1.0 / len(self.samples))):
+        for name, value in (("bias", float(self.params.bias)), ("alpha", 1.0 / len(self.scene.light_samples))):
             if name in program:
                 program[name].value = value
         self.target.textures["place"].use(0)
@@ -155,7 +142,7 @@ class Prepared:
         stages: dict[str, list[np.ndarray]] = {"warp.image": [], "project.coord": [], "project.shadow": []}
         if isinstance(self.source, WarpedMaps):
             stages["warp.rows"] = []
-        for sample in self.samples:
+        for sample in self.scene.light_samples:
             self._draw_map(sample)
             self._set_projection(self.coordinates.program, sample)
             result.fbo.use()
@@ -168,7 +155,7 @@ class Prepared:
             stages["project.coord"].append(projected[..., :3])
             stages["project.shadow"].append(projected[..., 3])
         result.release()
-        single = len(self.samples) == 1
+        single = len(self.scene.light_samples) == 1
         arrays = {name: each[0] if single else np.stack(each) for name, each in stages.items()}
         shown = {"raster.world": place[..., :3].astype(np.float64), "raster.kind": place[..., 3].astype(np.int32)}
         return arrays | shown | {"accumulate.shadow": np.minimum(self.accumulated.read(), 1.0)}
@@ -181,7 +168,7 @@ class Port:
         self.device = device or gl.create_device()
         self._programs = Programs(self.device)
 
-    def render(self, scene: Any, params: Any, **options: Any) -> Frame:
+    def render(self, scene: Any, params: Any, **options: Any) -> gl.Frame:
         """One frame, read back. The options are those of `prepare`."""
         prepared = self.prepare(scene, params, **options)
         try:
@@ -190,21 +177,19 @@ class Port:
         finally:
             prepared.release()
 
-    def maps(self, scene: Any, params: Any, positions: np.ndarray) -> np.ndarray:
-        """Stage 1: (3, 3, S, S) maps of the caster at `positions` (3, 3, 2), seen from the light's centre."""
+    def maps(self, scene: Any, params: Any) -> np.ndarray:
+        """Stage 1: (3, 3, S, S) maps of the caster at the nine positions, seen from the light's centre."""
         _check(params, rendered=True)
         caster = CasterMaps(self.device, self._programs, scene, params)
         images = []
-        for offset in np.asarray(positions).reshape(9, 2):
-            caster.draw(np.asarray(scene.light.position, float), offset)
+        for offset in scene.maps.positions.reshape(9, 2):
+            caster.draw(scene.light.camera, offset)
             images.append(caster.read())
         caster.release()
         return np.stack(images).reshape(3, 3, *images[0].shape)
 
-    def prepare(
-        self, scene: Any, params: Any, *, maps: Any = None, stages: bool = True, texels: str = "f1"
-    ) -> Prepared:
-        """Upload and link. `maps`: what `ibr_ref.shadows.prepare` made, for method="warp".
+    def prepare(self, scene: Any, params: Any, *, stages: bool = True, texels: str = "f1") -> Prepared:
+        """Upload and link.
 
         texels: "f1" or "f4", what warped masks are stored as without stages.
 
@@ -226,15 +211,13 @@ class Port:
             CasterMaps(self.device, self._programs, scene, params)
             if params.method == "direct"
             else create_warped_maps(
-                self.device, self._programs, maps, params, exact=stages, texels="f4" if stages else texels
+                self.device, self._programs, scene.maps, params, exact=stages, texels="f4" if stages else texels
             )
         )
         return Prepared(
             device=self.device,
             scene=scene,
             params=params,
-            samples=light_samples(scene, params),
-            positions=None if params.method == "direct" else np.asarray(maps.positions, float),
             source=source,
             target=gl.create_target(self.device, *size, STAGES if stages else FAST),
             surface=surface,

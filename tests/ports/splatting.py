@@ -1,6 +1,6 @@
 """Splatting of depth images on OpenGL: the same inputs as `ibr_ref.splatting.render`, in float32 GLSL.
 
-The scene is duck-typed (`images`, `camera`, `light`, `background`), nothing of `ibr_ref` is imported. One draw call a
+The scene is that of an exported case, as case_folder.py reads it; nothing of `ibr_ref` is imported. One draw call a
 reference image, one vertex a valid pixel, which fetches its depth, colour and normal from a texture: the reference images
 themselves, as an atlas is a matter of how many textures a device binds. Two primitives:
 
@@ -10,23 +10,21 @@ themselves, as an atlas is a matter of how many textures a device binds. Two pri
   rasterizer. Indexed, the pixel stored four times: on llvmpipe instances of one quad take 1.3 to 1.5 times as long, and a
   geometry shader is no faster.
 
-Colours are stored as bytes, as in the files that reference images come from; what is not a multiple of 1/255 is refused.
+Colours are stored as bytes, as in the files that reference images come from, or in a texture of their own if they are not
+multiples of 1/255.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any
 
 import moderngl
 import numpy as np
 
 from tests.ports import gl
-from tests.ports.normals import normal_codes
 
-HERE = Path(__file__).parent
 FAST = {"color": (4, "f1")}
 STAGES = {"color": (4, "f4"), "splat": (1, "i4")}
 VARYINGS = {"window": 2, "depth": 1, "width": 1, "color": 3}
@@ -36,23 +34,20 @@ CORNERS = {"points": 1, "quads": 4}
 
 
 @dataclass
-class Frame:
-    """What a port hands in: `color` (H, W, 3), `depth` (H, W), and the stages by the specification's names."""
-
-    color: np.ndarray
-    depth: np.ndarray
-    stages: dict[str, np.ndarray] = field(default_factory=dict)
-
-
-@dataclass
 class _Draw:
     """The points of one reference image, ready to be submitted."""
 
     vao: moderngl.VertexArray
     uniforms: moderngl.Buffer
-    texels: moderngl.Texture
+    textures: list[moderngl.Texture]
     pixels: np.ndarray
     owned: list[Any]
+
+    def bind(self) -> None:
+        """Its uniforms and textures."""
+        self.uniforms.bind_to_uniform_block(0)
+        for unit, texture in enumerate(self.textures):
+            texture.use(unit)
 
 
 @dataclass
@@ -72,23 +67,22 @@ class Prepared:
         self.device.ctx.enable_only(moderngl.DEPTH_TEST | moderngl.PROGRAM_POINT_SIZE)
         self.device.ctx.depth_func = "<"
         for draw in self.draws:
-            draw.uniforms.bind_to_uniform_block(0)
-            draw.texels.use(0)
+            draw.bind()
             draw.vao.render(self.mode)
 
     def seconds(self) -> float:
         """Time of one frame, from the first call to the return of glFinish, without read-back."""
         return gl.frame_seconds(self.device, self.draw)
 
-    def read(self) -> Frame:
+    def read(self) -> gl.Frame:
         """The frame that was drawn last."""
         color = self.target.read("color")
         color = color[..., :3] / 255.0 if color.dtype == np.uint8 else color[..., :3].astype(np.float64)
         depth = self.target.read_depth().astype(np.float64)
         if not self.stages:
-            return Frame(color=color, depth=depth)
+            return gl.Frame(color=color, depth=depth)
         shown = {"raster.splat": self.target.read("splat")[..., 0], "raster.depth": depth.copy()}
-        return Frame(color=color, depth=depth, stages=self.vertices | shown)
+        return gl.Frame(color=color, depth=depth, stages=self.vertices | shown)
 
     def release(self) -> None:
         """Give everything back to the driver."""
@@ -105,7 +99,7 @@ class Port:
         self.device = device or gl.create_device()
         self._programs: dict[str, moderngl.Program] = {}
 
-    def render(self, scene: Any, params: Any, **options: Any) -> Frame:
+    def render(self, scene: Any, params: Any, **options: Any) -> gl.Frame:
         """One frame, read back. The options are those of `prepare`."""
         prepared = self.prepare(scene, params, **options)
         try:
@@ -120,42 +114,46 @@ class Port:
         params: Any,
         *,
         stages: bool = True,
-        primitive: str = "points",
-        normals: Sequence[np.ndarray] | None = None,
+        primitive: str | None = None,
     ) -> Prepared:
         """Upload `scene`, compile for `params`; `stages=False` is the variant that is timed: RGBA8 and depth alone.
 
-        normals: (H, W, 3) uint8 of each image, which the specification makes an input of ports; None: made in NumPy.
+        primitive: None for point sprites where the driver has all widths, otherwise quads. Raises ValueError for what is
+        not ported.
         """
-        _check(scene, params, primitive, self.device.ctx.info["GL_POINT_SIZE_RANGE"])
+        sizes = self.device.ctx.info["GL_POINT_SIZE_RANGE"]
+        if primitive is None:
+            primitive = "points" if sizes[0] <= params.min_width <= params.max_width <= sizes[1] else "quads"
+        _check(params, primitive, sizes)
         width, height = int(scene.camera.width), int(scene.camera.height)
         target = gl.create_target(self.device, width, height, STAGES if stages else FAST)
         target.clears = {"color": (*map(float, scene.background), 0.0), "splat": (-1,)}
         guard = int(np.ceil(params.max_width / 2)) if primitive == "points" else 0
         target.fbo.viewport = (-guard, -guard, width + 2 * guard, height + 2 * guard)
-        if normals is None:
-            normals = [normal_codes(image) if scene.light is not None else _no_codes(image) for image in scene.images]
         flags = {"QUADS": primitive == "quads", "DISC": params.shape == "disc", "STAGES": stages}
-        program = self._program(_defines(scene, flags | {"ZERO_TO_ONE": self.device.zero_to_one}))
         draws: list[_Draw] = []
-        for image, codes in zip(scene.images, normals, strict=True):
+        for image in scene.images:
+            program = self._program(_defines(scene, image, flags | {"ZERO_TO_ONE": self.device.zero_to_one}))
             block = _uniforms(scene, params, image, guard, first=sum(len(draw.pixels) for draw in draws))
-            texels = _texels(image, codes, lit=scene.light is not None)
-            draws.append(self._image(image, texels, program, block, primitive))
+            draws.append(self._image(image, scene.light is not None, program, block, primitive))
         vertices = self._vertices(scene, target, draws) if stages else {}
         mode = moderngl.POINTS if primitive == "points" else moderngl.TRIANGLES
         return Prepared(device=self.device, target=target, draws=draws, mode=mode, stages=stages, vertices=vertices)
 
-    def _image(self, image: Any, texels: np.ndarray, program: moderngl.Program, block: bytes, primitive: str) -> _Draw:
-        """Buffers and texture of one reference image; an image without a point draws nothing."""
+    def _image(self, image: Any, lit: bool, program: moderngl.Program, block: bytes, primitive: str) -> _Draw:
+        """Buffers and textures of one reference image; an image without a point draws nothing."""
         ctx = self.device.ctx
+        texels = _texels(image, lit=lit)
         pixels = np.argwhere(np.asarray(image.mask)).astype(np.int32)
         columns_rows = np.repeat(pixels[:, ::-1], CORNERS[primitive], axis=0).astype(np.uint16)
         height, width, words = texels.shape
         texture = ctx.texture((width, height), words, texels.tobytes(), alignment=4, dtype="u4")
         texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        textures = [texture]
+        if not _in_bytes(image):
+            textures.append(gl.upload(self.device, image.color, filtered=False))
         uniforms = ctx.buffer(block)
-        owned: list[Any] = [texture, uniforms, ctx.buffer(columns_rows.tobytes() or b"\0\0\0\0")]
+        owned: list[Any] = [*textures, uniforms, ctx.buffer(columns_rows.tobytes() or b"\0\0\0\0")]
         layout = [(owned[-1], "2u2", "pixel")]
         if primitive == "points":
             vao = ctx.vertex_array(program, layout)
@@ -164,12 +162,12 @@ class Port:
             owned.append(ctx.buffer(_quad_indices(len(pixels)).tobytes() or b"\0\0\0\0"))
             vao = ctx.vertex_array(program, layout, index_buffer=owned[-1], index_element_size=4)
             vao.vertices = 6 * len(pixels)
-        return _Draw(vao=vao, uniforms=uniforms, texels=texture, pixels=pixels, owned=[vao, *owned])
+        return _Draw(vao=vao, uniforms=uniforms, textures=textures, pixels=pixels, owned=[vao, *owned])
 
     def _program(self, defines: str, varyings: Sequence[str] = ()) -> moderngl.Program:
         """The linked program for these #defines; with varyings for transform feedback, of the vertex stage alone."""
         if defines not in self._programs:
-            vertex, fragment = (defines + (HERE / f"splatting.{kind}").read_text() for kind in ("vert", "frag"))
+            vertex, fragment = (defines + gl.source(f"splatting.{kind}") for kind in ("vert", "frag"))
             self._programs[defines] = self.device.ctx.program(
                 vertex_shader=vertex, fragment_shader=None if varyings else fragment, varyings=tuple(varyings)
             )
@@ -177,9 +175,9 @@ class Port:
 
     def _vertices(self, scene: Any, target: gl.Target, draws: list[_Draw]) -> dict[str, np.ndarray]:
         """The stages "vertex.*", as the vertex shader made them."""
-        program = self._program(_defines(scene, {"CAPTURE": True}), tuple(VARYINGS))
         target.fbo.use()  # a draw call wants a complete frame buffer, even if nothing is rasterized
-        rows = np.concatenate([self._capture(draw, program) for draw in draws])
+        programs = [self._program(_defines(scene, image, {"CAPTURE": True}), tuple(VARYINGS)) for image in scene.images]
+        rows = np.concatenate([self._capture(draw, program) for draw, program in zip(draws, programs, strict=True)])
         window, depth, width, color = np.split(rows, np.cumsum(list(VARYINGS.values()))[:-1], axis=1)
         dropped = width <= 0.0
         source = [np.pad(draw.pixels, ((0, 0), (1, 0)), constant_values=number) for number, draw in enumerate(draws)]
@@ -199,8 +197,7 @@ class Port:
         source = ctx.buffer(draw.pixels[:, ::-1].astype(np.uint16).tobytes())
         result = ctx.buffer(reserve=count * numbers * 4)
         vao = ctx.vertex_array(program, [(source, "2u2", "pixel")])
-        draw.uniforms.bind_to_uniform_block(0)
-        draw.texels.use(0)
+        draw.bind()
         vao.transform(result, moderngl.POINTS, vertices=count)
         rows = np.frombuffer(result.read(), dtype=np.float32).reshape(count, numbers).copy()
         for item in (vao, source, result):
@@ -208,24 +205,19 @@ class Port:
         return rows
 
 
-def codes_of_atlas(stages: dict[str, Any]) -> list[np.ndarray]:
-    """The (H, W, 3) uint8 normals of every image, cut out of the stages "atlas.normal" by "atlas.rects"."""
-    pages = stages["atlas.normal"]
-    return [pages[page][y : y + height, x : x + width] for page, x, y, width, height in stages["atlas.rects"].tolist()]
+def _in_bytes(image: Any) -> bool:
+    """Whether all colours are multiples of 1/255."""
+    scaled = 255.0 * np.asarray(image.color)
+    return bool(np.abs(scaled - np.rint(scaled)).max() <= 1e-6)
 
 
-def _no_codes(image: Any) -> np.ndarray:
-    """Normals that nobody reads."""
-    return np.zeros((*np.shape(image.depth), 3), np.uint8)
-
-
-def _texels(image: Any, codes: np.ndarray, *, lit: bool) -> np.ndarray:
+def _texels(image: Any, *, lit: bool) -> np.ndarray:
     """(H, W, 2) uint32, lit 4 (three would be four as well): the depth's bits, the colour's bytes, the normal's bytes."""
     texels = np.zeros((*np.shape(image.depth), 4 if lit else 2), np.uint32)
     texels[..., 0] = np.asarray(image.depth, np.float32).view(np.uint32)
     texels[..., 1] = _word(np.rint(255.0 * np.asarray(image.color)))
     if lit:
-        texels[..., 2] = _word(codes)
+        texels[..., 2] = _word(image.normals)
     return texels
 
 
@@ -255,16 +247,17 @@ def _uniforms(scene: Any, params: Any, image: Any, guard: int, first: int) -> by
     return np.concatenate(columns + padded).tobytes() + np.array([first, 0, 0, 0], np.int32).tobytes()
 
 
-def _defines(scene: Any, flags: dict[str, bool]) -> str:
-    """The lines in front of a shader's source: the flags that are set, and what the light asks for."""
+def _defines(scene: Any, image: Any, flags: dict[str, bool]) -> str:
+    """The lines in front of a shader's source: the flags that are set, and what the light and the image ask for."""
     light = scene.light
     flags = flags | {"LIT": light is not None, "HAS_SPECULAR": light is not None and light.specular > 0.0}
+    flags = flags | {"COLOR_TEXTURE": not _in_bytes(image)}
     lines = [f"#define {name}\n" for name, present in flags.items() if present]
     lines += [] if light is None else [f"#define EXPONENT {light.exponent}\n"]
     return "#version 450 core\n" + "".join(lines)
 
 
-def _check(scene: Any, params: Any, primitive: str, sizes: tuple[float, float]) -> None:
+def _check(params: Any, primitive: str, sizes: tuple[float, float]) -> None:
     """Refuse what is not ported."""
     if primitive not in CORNERS:
         raise ValueError(f"primitive = {primitive!r}: the port allows {', '.join(CORNERS)}")
@@ -273,7 +266,3 @@ def _check(scene: Any, params: Any, primitive: str, sizes: tuple[float, float]) 
     if primitive == "points" and not sizes[0] <= params.min_width <= params.max_width <= sizes[1]:
         found = f"min_width = {params.min_width}, max_width = {params.max_width}"
         raise ValueError(f"{found}: this driver's point sprites allow {sizes[0]:g} to {sizes[1]:g}")
-    for number, image in enumerate(scene.images):
-        scaled = 255.0 * np.asarray(image.color)
-        if np.abs(scaled - np.rint(scaled)).max() > 1e-6:
-            raise ValueError(f"images[{number}].color: the port allows multiples of 1/255")

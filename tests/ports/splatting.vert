@@ -1,6 +1,7 @@
 // Splatting of depth images, vertex stage: one vertex a valid pixel of a reference image (Lee & Park 2006, section 3.2).
 // `#version` and the #defines are put in front by splatting.py:
 //   LIT, HAS_SPECULAR, EXPONENT               Phong's lighting, or the stored colours
+//   COLOR_TEXTURE                             colours that are no bytes
 //   QUADS, DISC, STAGES, CAPTURE              the primitive, its shape, and what is handed on
 //   ZERO_TO_ONE                               the clip volume is 0 ≤ z ≤ w
 //
@@ -26,6 +27,9 @@ layout(std140, binding = 0) uniform Splats {
 };
 
 layout(binding = 0) uniform usampler2D texels;  // depth as a 32-bit float, colour, normal: the latter four bytes each
+#ifdef COLOR_TEXTURE
+layout(binding = 1) uniform sampler2D colors;   // as floats
+#endif
 
 layout(location = 0) in uvec2 pixel;            // column, row
 
@@ -98,7 +102,11 @@ void main() {
     vec3 view = (view_from_world * vec4(world, 1.0)).xyz;
     vec4 clip = clip_from_view * vec4(view, 1.0);
     float size = splat_width(world, view);
+#ifdef COLOR_TEXTURE
+    color = texelFetch(colors, ivec2(pixel), 0).rgb;
+#else
     color = bytes(texel.y) / 255.0;
+#endif
 #ifdef LIT
     color = shade(world, unit(bytes(texel.z) - 128.0), color);
 #endif

@@ -1,25 +1,28 @@
-"""The GLSL port of splatting on a real OpenGL, against the reference: equal wherever float32 cannot turn a decision."""
+"""The GLSL port of splatting on a real OpenGL, judged by the oracle: all that it does is legal, and a fault is noticed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import ibr_ref
 from ibr_ref import splatting
+from ibr_ref.oracle.cases import Case
+from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.referees.splatting import SplattingReferee
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 
-from tests.ports.normals import normal_codes  # noqa: E402
-from tests.ports.rounding import LOOSE, Rounded  # noqa: E402
-from tests.ports.splatting import Frame, Port, codes_of_atlas  # noqa: E402
-from tests.ports.splatting_bounds import SUBPIXEL, undecided_pixels, vertex_bounds  # noqa: E402
+from tests.ports.described import described  # noqa: E402
+from tests.ports.gl import Frame  # noqa: E402
+from tests.ports.splatting import Port  # noqa: E402
 
-SNAPPED_TWICE = SUBPIXEL + 1e-4
-"""A driver may snap the width of a sprite, and a border of a quad, to 1/256 once the centre is: 1/256 pixel off, no more."""
-
+REFEREE = SplattingReferee()
 LIGHTS = {
     "baked": None,
     "point": ibr_ref.Light(position=(2.0, -1.5, 2.5), ambient=0.1, diffuse=0.7, specular=0.4, exponent=9),
@@ -91,91 +94,77 @@ def constant(width: float) -> splatting.Params:
     )
 
 
-def assert_vertices_agree(
-    bounds: dict[str, Rounded], stages: dict[str, np.ndarray], ported: dict[str, np.ndarray]
-) -> None:
-    """Window, depth, width and colour within their bounds, and the same points kept, but for those on a clip plane."""
-    np.testing.assert_array_equal(stages["vertex.source"], ported["vertex.source"])
-    on_a_plane = (abs(bounds["near"].value) <= bounds["near"].error) | (abs(bounds["far"].value) <= bounds["far"].error)
-    kept = stages["vertex.width"] > 0.0
-    np.testing.assert_array_equal((ported["vertex.width"] > 0.0)[~on_a_plane], kept[~on_a_plane])
-    assert on_a_plane.sum() <= 3
-    assert kept.sum() > 1000
-    for plane in ("near", "far"):
-        assert (bounds[plane].value < -bounds[plane].error).any(), f"the {plane} plane should cut some points off"
-    kept &= ported["vertex.width"] > 0.0
-    columns = {
-        "window_x": ("window", 0),
-        "window_y": ("window", 1),
-        "depth": ("depth",),
-        "width": ("width",),
-        "color": ("color",),
-    }
-    for name, (stage, *index) in columns.items():
-        ours, theirs = (each[f"vertex.{stage}"][(kept, *index)] for each in (stages, ported))
-        # The bounds' own float64 evaluation is a third witness.
-        np.testing.assert_allclose(bounds[name].value[kept], ours, rtol=1e-9, atol=1e-9, err_msg=name)
-        excess = abs(ours - theirs) - bounds[name].error[kept]
-        assert excess.max() <= 1e-12, (name, excess.max(), bounds[name].error[kept].max())
+def case(view: splatting.Scene, params: splatting.Params) -> Case:
+    """With the reference's normals, which ports are given."""
+    frame = splatting.render(view, params)
+    return Case(
+        name="port",
+        method="splatting",
+        kind="typical",
+        about="",
+        profile="webgpu",
+        scene=view,
+        params=params,
+        inputs={"normals": codes_of_atlas(frame.stages)},
+    )
 
 
-def assert_pictures_agree(
-    bounds: dict[str, Rounded], frame: object, drawn: Frame, undecided: np.ndarray, least_decided: float
-) -> None:
-    """Winners equal, depths and colours within the bounds of the winner, wherever no rounding can turn the decision."""
-    stages, ported = frame.stages, drawn.stages
-    winner = stages["raster.splat"]
-    decided = ~undecided
-    covered = stages["raster.overdraw"] > 0
-    assert covered.mean() > 0.2
-    assert (decided & covered).sum() > least_decided * covered.sum(), "hardly a pixel is certain: the test says nothing"
-    wrong = decided & (winner != ported["raster.splat"])
-    assert not wrong.any(), (wrong.sum(), np.argwhere(wrong)[:3].tolist())
-    seen = decided & (winner >= 0)
-    off = abs(stages["raster.depth"] - ported["raster.depth"])
-    assert (off[seen] <= bounds["depth"].error[winner[seen]] + LOOSE).all()
-    assert (off[decided & ~covered] == 0.0).all()
-    off = abs(frame.color - drawn.color)
-    assert (off[seen] <= bounds["color"].error[winner[seen]] + 1e-12).all()
-    assert off[decided & ~covered].max(initial=0.0) < 1e-7
+def codes_of_atlas(stages: dict[str, Any]) -> list[np.ndarray]:
+    """The (H, W, 3) uint8 normals of every image."""
+    pages = stages["atlas.normal"]
+    return [pages[page][y : y + height, x : x + width] for page, x, y, width, height in stages["atlas.rects"].tolist()]
+
+
+def drawn(port: Port, given: Case, **options: Any) -> Frame:
+    """The port's frame of an exported case."""
+    exported = described("splatting", given.scene, given.params, **given.inputs)
+    return port.render(exported.scene, exported.params, **options)
+
+
+def judged(given: Case, frame: Frame, profile: str = "webgpu") -> dict[str, Judgement]:
+    """What the referee says of a port's frame, by stage."""
+    picture = {"color": frame.color, "depth": frame.depth}
+    found = REFEREE.judge_stages(given, PROFILES[profile], {**frame.stages, **picture})
+    found.append(REFEREE.judge_image(given, PROFILES[profile], picture))
+    return {judgement.stage: judgement for judgement in found}
+
+
+def assert_legal(found: dict[str, Judgement], most_undecided: float) -> None:
+    """Nothing is wrong, and enough of it is certain to say so."""
+    assert list(found) == ["vertex", "raster", "resolve", "image"]
+    for stage, judgement in found.items():
+        assert not judgement.wrong.any(), (stage, np.argwhere(judgement.wrong)[:3].tolist())
+        assert judgement.undecided.mean() <= most_undecided, stage
 
 
 @pytest.mark.parametrize("light", LIGHTS)
 @pytest.mark.parametrize("view", ["perspective", "orthographic"])
-def test_vertices_agree_within_float32_bounds(port: Port, view: str, light: str) -> None:
-    described = scene(view, light)
-    frame = splatting.render(described, law(), stages=True)
-    codes = codes_of_atlas(frame.stages)
-    drawn = port.render(described, law(), normals=codes)
-    bounds = vertex_bounds(described, law(), codes)
-    assert_vertices_agree(bounds, frame.stages, drawn.stages)
-    kept = frame.stages["vertex.width"] > 0.0
-    largest = {name: bounds[name].error[kept].max() for name in ("window_x", "window_y", "depth", "width", "color")}
-    assert max(largest["window_x"], largest["window_y"]) < 1e-3, largest  # bounds that mean something
-    assert largest["depth"] < 2e-5, largest
-    assert largest["width"] < 1e-4, largest
-    assert np.median(bounds["color"].error[kept]) < 1e-4, largest
+def test_vertices_are_legal(port: Port, view: str, light: str) -> None:
+    given = case(scene(view, light), law())
+    found = judged(given, drawn(port, given))["vertex"]
+    kept = given.frame.stages["vertex.width"] > 0.0
+    assert kept.sum() > 1000
+    assert (~kept).sum() > 100, "the planes should cut some points off"
+    assert not found.wrong.any()
+    assert found.undecided.sum() <= 3
+    assert np.median(found.width[kept]) < 1e-3, "bounds that mean something"
 
 
 @pytest.mark.parametrize("light", ["baked", "point"])
 @pytest.mark.parametrize("view", ["perspective", "orthographic"])
 @pytest.mark.parametrize("shape", ["square", "disc"])
 @pytest.mark.parametrize("primitive", ["points", "quads"])
-def test_winners_agree_where_decided(port: Port, primitive: str, shape: str, view: str, light: str) -> None:
-    described = scene(view, light)
-    frame = splatting.render(described, law(shape), stages=True)
-    codes = codes_of_atlas(frame.stages)
-    drawn = port.render(described, law(shape), normals=codes, primitive=primitive)
-    bounds = vertex_bounds(described, law(shape), codes)
-    undecided = undecided_pixels(bounds, frame.stages, shape, SNAPPED_TWICE)
-    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
+def test_pictures_are_legal(port: Port, primitive: str, shape: str, view: str, light: str) -> None:
+    given = case(scene(view, light), law(shape))
+    assert (given.frame.stages["raster.overdraw"] > 0).mean() > 0.2
+    assert_legal(judged(given, drawn(port, given, primitive=primitive)), most_undecided=0.03)
 
 
 @pytest.mark.parametrize("primitive", ["points", "quads"])
 def test_the_timed_variant_draws_the_same_picture(port: Port, primitive: str) -> None:
-    described = scene(light="point")
-    staged = port.render(described, law(), primitive=primitive)
-    timed = port.render(described, law(), primitive=primitive, stages=False)
+    given = case(scene(light="point"), law())
+    staged = drawn(port, given, primitive=primitive)
+    timed = drawn(port, given, primitive=primitive, stages=False)
     assert timed.stages == {}
     np.testing.assert_array_equal(staged.depth, timed.depth)
     assert abs(staged.color - timed.color).max() < 0.5001 / 255.0
@@ -184,36 +173,22 @@ def test_the_timed_variant_draws_the_same_picture(port: Port, primitive: str) ->
 @pytest.mark.parametrize("width", [1.0, 1.5, 2.0, 2.0 + 1.0 / 128.0, 3.0])
 def test_quads_of_constant_width_leave_only_the_snapping_of_centres_open(port: Port, width: float) -> None:
     """Widths that are multiples of 1/128 have corners on the raster of 1/256, so that nothing is rounded there."""
-    described = scene()
-    frame = splatting.render(described, constant(width), stages=True)
-    codes = codes_of_atlas(frame.stages)
-    drawn = port.render(described, constant(width), primitive="quads", normals=codes)
-    bounds = vertex_bounds(described, constant(width), codes)
-    undecided = undecided_pixels(bounds, frame.stages, "square", slack=0.0)
-    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
+    given = case(scene(), constant(width))
+    assert_legal(judged(given, drawn(port, given, primitive="quads"), "ieee32"), most_undecided=0.01)
 
 
 @pytest.mark.parametrize("width", [1.0 + 1.0 / 256.0, 2.0 + 1.0 / 256.0, 3.0 - 1.0 / 256.0])
 def test_sprites_of_widths_between_the_steps_have_no_border_on_a_centre(port: Port, width: float) -> None:
-    described = scene()
-    frame = splatting.render(described, constant(width), stages=True)
-    codes = codes_of_atlas(frame.stages)
-    drawn = port.render(described, constant(width), normals=codes)
-    bounds = vertex_bounds(described, constant(width), codes)
-    undecided = undecided_pixels(bounds, frame.stages, "square", SNAPPED_TWICE)
-    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
+    given = case(scene(), constant(width))
+    assert_legal(judged(given, drawn(port, given, primitive="points")), most_undecided=0.03)
 
 
 def test_the_half_open_rule_where_every_border_is_on_a_pixel_centre(port: Port) -> None:
     """Seen from the reference camera itself at width 2: each splat covers its pixel and those to the left and above."""
     image = reference("perspective", (3.0, 0.0, 0.5))
-    described = splatting.Scene(images=[image], camera=image.camera, light=None, background=(0.0, 0.0, 0.0))
-    frame = splatting.render(described, constant(2.0), stages=True)
-    bounds = vertex_bounds(described, constant(2.0), codes_of_atlas(frame.stages))
-    undecided = undecided_pixels(bounds, frame.stages, "square", slack=0.0)
-    assert frame.stages["raster.overdraw"].tolist() == [[4] * 29 + [2]] * 21 + [[2] * 29 + [1]]
-    drawn = port.render(described, constant(2.0), primitive="quads")
-    assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.99)
+    given = case(splatting.Scene(images=[image], camera=image.camera, light=None), constant(2.0))
+    assert given.frame.stages["raster.overdraw"].tolist() == [[4] * 29 + [2]] * 21 + [[2] * 29 + [1]]
+    assert_legal(judged(given, drawn(port, given, primitive="quads"), "ieee32"), most_undecided=0.01)
 
 
 def test_a_splat_whose_centre_is_outside_reaches_in(port: Port) -> None:
@@ -222,52 +197,33 @@ def test_a_splat_whose_centre_is_outside_reaches_in(port: Port) -> None:
     narrow = ibr_ref.Camera.look_at(
         eye=(3.0, 0.0, 0.5), target=(0, 0, 0), vertical_fov=15.0, near=0.5, far=9, width=40, height=32
     )
-    described = splatting.Scene(images=[image], camera=narrow, light=None, background=(0.0, 0.0, 0.0))
-    wide = constant(9.0 + 1.0 / 256.0)
-    frame = splatting.render(described, wide, stages=True)
-    bounds = vertex_bounds(described, wide, codes_of_atlas(frame.stages))
-    undecided = undecided_pixels(bounds, frame.stages, "square", SNAPPED_TWICE)
-    window = frame.stages["vertex.window"][frame.stages["raster.splat"][frame.stages["raster.splat"] >= 0]]
+    given = case(splatting.Scene(images=[image], camera=narrow, light=None), constant(9.0 + 1.0 / 256.0))
+    stages = given.frame.stages
+    window = stages["vertex.window"][stages["raster.splat"][stages["raster.splat"] >= 0]]
     assert ((window < 0.0) | (window > [40.0, 32.0])).any(), "no winner has its centre outside: the test says nothing"
     for primitive in ("points", "quads"):
-        drawn = port.render(described, wide, primitive=primitive)
-        assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
-
-
-def test_normals_made_in_numpy_are_the_reference_s() -> None:
-    described = scene()
-    codes = codes_of_atlas(splatting.render(described, law(), stages=True).stages)
-    for image, theirs in zip(described.images, codes, strict=True):
-        np.testing.assert_array_equal(normal_codes(image), theirs)
+        assert_legal(judged(given, drawn(port, given, primitive=primitive)), most_undecided=0.03)
 
 
 def test_a_broken_port_is_noticed(port: Port) -> None:
-    """The same comparisons with a light, a law and a depth that are slightly off: none may pass."""
-    described = scene(light="point")
-    frame = splatting.render(described, law(), stages=True)
-    codes = codes_of_atlas(frame.stages)
-    bounds = vertex_bounds(described, law(), codes)
-    brighter = [np.where(each > 0, each.astype(int) + 1, 0).clip(0, 255).astype(np.uint8) for each in codes]
-    drawn = port.render(described, law(), normals=brighter)
-    with pytest.raises(AssertionError, match="color"):
-        assert_vertices_agree(bounds, frame.stages, drawn.stages)
-    wider = splatting.Params(alpha=1.0001, beta=0.01, gamma=0.02, delta=0.12)
-    with pytest.raises(AssertionError, match="width"):
-        assert_vertices_agree(bounds, frame.stages, port.render(described, wider, normals=codes).stages)
-    undecided = undecided_pixels(bounds, frame.stages, "square", SNAPPED_TWICE)
-    much_wider = splatting.Params(alpha=1.1, beta=0.01, gamma=0.02, delta=0.12)
-    drawn = port.render(described, much_wider, normals=codes)
-    with pytest.raises(AssertionError):
-        assert_pictures_agree(bounds, frame, drawn, undecided, least_decided=0.95)
+    """Normals and laws that are slightly off: none may pass."""
+    given = case(scene(light="point"), law())
+    codes = given.inputs["normals"]
+    brighter = [np.where(each > 0, np.minimum(each.astype(int) + 1, 255), 0).astype(np.uint8) for each in codes]
+    found = judged(given, drawn(port, replace(given, inputs={"normals": brighter})))
+    assert [stage for stage, judgement in found.items() if judgement.wrong.any()] == ["vertex", "image"]
+    for alpha in (1.0001, 1.1):
+        wider = splatting.Params(alpha=alpha, beta=0.01, gamma=0.02, delta=0.12)
+        found = judged(given, drawn(port, replace(given, params=wider)), "gl")
+        vertex = found["vertex"]
+        assert {vertex.arrays[i] for i in vertex.blame[vertex.wrong]} == {"vertex.width"}
+    assert found["image"].wrong.any()
 
 
 def test_what_is_not_ported_is_refused(port: Port) -> None:
-    described = scene()
+    given = case(scene(), law())
     with pytest.raises(ValueError, match="primitive = 'hexagons'"):
-        port.prepare(described, law(), primitive="hexagons")
+        drawn(port, given, primitive="hexagons")
+    wide = splatting.Params(alpha=1.0, beta=0.0, gamma=0.0, delta=1.0, max_width=1e5)
     with pytest.raises(ValueError, match=r"max_width = 100000\.0"):
-        port.prepare(described, splatting.Params(alpha=1.0, beta=0.0, gamma=0.0, delta=1.0, max_width=1e5))
-    image = reference("perspective", (3.0, 0.0, 0.5))
-    grey = ibr_ref.DepthImage(color=np.full((22, 30, 3), 0.3333), depth=image.depth, camera=image.camera)
-    with pytest.raises(ValueError, match=r"images\[0\]\.color"):
-        port.prepare(splatting.Scene(images=[grey], camera=image.camera, light=None), law())
+        drawn(port, replace(given, params=wide), primitive="points")

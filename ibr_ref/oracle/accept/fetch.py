@@ -8,7 +8,7 @@ positions reaches into other cells, its extremes lie on the corners of the box a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
@@ -53,16 +53,28 @@ class Texture:
     def at(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Floats:
         """Texels by index, after the wrap mode."""
         height, width = self.texels.shape[:2]
-        if self.repeat:
-            rows, columns = rows % height, columns % width
-        return np.asarray(self.texels[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)])
+        return self._gather(self._wrapped(rows, height) * width + self._wrapped(columns, width))
 
     def cell(self, x: Floats, y: Floats) -> tuple[list[Floats], Floats, Floats]:
         """The four texels (00, 10, 01, 11; x first) around x = u W - 0.5, y = v H - 0.5, and the fractions."""
+        height, width = self.texels.shape[:2]
         x0, y0 = np.floor(x), np.floor(y)
-        columns, rows = x0.astype(np.int64), y0.astype(np.int64)
-        corners = [self.at(rows + i, columns + j) for i in (0, 1) for j in (0, 1)]
-        return corners, self._spread(x - x0), self._spread(y - y0)
+        column, row = x0.astype(np.int64), y0.astype(np.int64)
+        columns = [self._wrapped(column + j, width) for j in (0, 1)]
+        rows = [self._wrapped(row + i, height) * width for i in (0, 1)]
+        return [self._gather(r + c) for r in rows for c in columns], self._spread(x - x0), self._spread(y - y0)
+
+    @cached_property
+    def _flat(self) -> Floats:
+        return np.ascontiguousarray(self.texels.reshape(-1, *self.texels.shape[2:]))
+
+    def _gather(self, index: NDArray[np.int64]) -> Floats:
+        return np.asarray(self._flat.take(index, axis=0))
+
+    def _wrapped(self, index: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+        if self.repeat:
+            return np.asarray(index % count)
+        return np.minimum(np.maximum(index, 0), count - 1)
 
     def bilinear(self, x: Floats, y: Floats) -> Floats:
         """The reference's fetch at x = u W - 0.5, y = v H - 0.5."""
@@ -87,7 +99,7 @@ def fetch(texture: Texture, u: Bounded, v: Bounded) -> Bounded:
     slope_y = np.maximum(np.abs(t01 - t00), np.abs(t11 - t10))
     error = slope_x * texture._spread(off_x) + slope_y * texture._spread(off_y)
     crossing = (np.floor(at_x - off_x) != np.floor(at_x + off_x)) | (np.floor(at_y - off_y) != np.floor(at_y + off_y))
-    largest = np.max([np.abs(t) for t in (t00, t10, t01, t11)], axis=0)
+    largest = reduce(np.maximum, [np.abs(t) for t in (t00, t10, t01, t11)])
     if crossing.any():
         largest[crossing] = texture.largest
         error[crossing] = _spread_around(texture, *(a[crossing] for a in (at_x, at_y, off_x, off_y, value)))

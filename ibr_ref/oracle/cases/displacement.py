@@ -39,6 +39,11 @@ def _looking(**view: Any) -> Camera:
     return Camera.look_at(**{"width": WIDTH, "height": HEIGHT, "near": 0.05, "far": 20.0, "vertical_fov": 40.0, **view})
 
 
+def _params(**values: Any) -> Params:
+    """A threshold that no lattice of these cases meets: where it does, as 0.1 does, whole rows of hits tie."""
+    return Params(**{"steep_threshold": 0.123, **values})
+
+
 def _noise(*shape: int, seed: int) -> Floats:
     return np.random.RandomState(seed).random_sample(shape)
 
@@ -86,7 +91,7 @@ def box() -> Case:
     """The paper's figure 6."""
     camera = _looking(eye=(1.0, -1.2, 0.9), target=(0.0, 0.0, 0.0), vertical_fov=32.0)
     scene = Scene(polygons=[models.box()], camera=camera, light=Light(direction=(0.5, -0.8, 1.0)))
-    return _case("box", "easy", "One box on the ground, the defaults, a facade on its walls.", scene, Params())
+    return _case("box", "easy", "One box on the ground, the defaults, a facade on its walls.", scene, _params())
 
 
 def slope() -> Case:
@@ -95,7 +100,7 @@ def slope() -> Case:
     light = Light(position=(1.0, -1.4, 1.5), diffuse=1.3, specular=0.8, exponent=12)
     about = "A tilted parallelogram with a facade under a lamp: self-shadow, a highlight, colours beyond white."
     scene = Scene(polygons=[_sheared()], camera=camera, light=light, background=(0.1, 0.3, 0.2))
-    return _case("slope", "typical", about, scene, Params(shadow_steps=7, steep_threshold=0.15))
+    return _case("slope", "typical", about, scene, _params(shadow_steps=7, steep_threshold=0.15))
 
 
 def city() -> Case:
@@ -104,7 +109,7 @@ def city() -> Case:
     light = Light(direction=(-0.7, -0.6, 0.6), specular=0.3, exponent=31)
     scene = Scene(polygons=[_quarter()[0]], camera=camera, light=light, background=(0.4, 0.5, 0.6))
     about = "A block of a city: facades, self-shadow from a low sun, a faint highlight."
-    return _case("city", "typical", about, scene, Params(linear_steps=40, binary_steps=3, shadow_steps=16))
+    return _case("city", "typical", about, scene, _params(linear_steps=40, binary_steps=3, shadow_steps=16))
 
 
 def extended() -> Case:
@@ -115,7 +120,7 @@ def extended() -> Case:
     light = Light(position=(0.0, 0.0, 1.2), specular=0.4, exponent=8)
     scene = Scene(polygons=_quarter(), camera=camera, light=light)
     about = "Four polygons that hide one another, without perspective, on extended bases."
-    return _case("extended", "typical", about, scene, Params(linear_steps=25, binary_steps=2, faces="extended"))
+    return _case("extended", "typical", about, scene, _params(linear_steps=25, binary_steps=2, faces="extended"))
 
 
 def mapped() -> Case:
@@ -124,7 +129,7 @@ def mapped() -> Case:
     polygon = _sheared(normal_map=0.5 + 0.5 * _noise(7, 5, 3, seed=3), facade_map=None)
     scene = Scene(polygons=[polygon], camera=camera, light=Light(direction=(0.4, -0.5, 1.0), specular=0.3))
     about = "A normal map on the parallelogram; steps without a binary search."
-    return _case("mapped", "easy", about, scene, Params(linear_steps=12, binary_steps=0))
+    return _case("mapped", "easy", about, scene, _params(linear_steps=12, binary_steps=0))
 
 
 def tiles() -> Case:
@@ -133,9 +138,11 @@ def tiles() -> Case:
     polygon = _sheared(
         height_map=_noise(11, 14, seed=0), normal_map=0.4 + 0.5 * _noise(7, 5, 3, seed=3), domain="repeat"
     )
-    scene = Scene(polygons=[polygon], camera=camera, light=Light(direction=(0.2, 0.3, 1.0), specular=0.5))
+    scene = Scene(polygons=[polygon], camera=camera, light=Light(direction=(0.9, 0.6, 0.5), specular=0.5))
     about = "Repeated maps on the base alone, the polygon's own depth, a normal map besides the facade, self-shadow."
-    params = Params(linear_steps=15, binary_steps=4, faces="base", depth="polygon", shadow_steps=3)
+    params = _params(
+        linear_steps=15, binary_steps=3, steep_threshold=0.031, faces="base", depth="polygon", shadow_steps=3
+    )
     return _case("tiles", "typical", about, scene, params)
 
 
@@ -144,32 +151,32 @@ def beside() -> Case:
     camera = _looking(eye=(1.6, -1.9, 0.25), target=(1.3, -0.3, 0.2), vertical_fov=36.0)
     scene = Scene(polygons=[_sheared()], camera=camera, light=Light(direction=(-0.3, -0.9, 0.8)))
     about = "The ray's own stretch inside the volume, from an eye beside it and below its top: walls at the border."
-    return _case("beside", "typical", about, scene, Params(linear_steps=20, binary_steps=4, interval="volume"))
+    return _case("beside", "typical", about, scene, _params(linear_steps=20, binary_steps=4, interval="volume"))
 
 
 def street() -> Case:
     """The volume's own interval from inside."""
-    camera = _looking(eye=(-0.5, -0.98, 0.1), target=(-0.52, -0.3, 0.16), vertical_fov=75.0, near=0.05, far=4.0)
+    camera = _looking(eye=(-0.5, -0.9, 0.2), target=(-0.52, -0.3, 0.16), vertical_fov=75.0, near=0.08, far=4.0)
     scene = Scene(polygons=[_quarter()[0]], camera=camera, light=Light(direction=(1.0, -0.5, 1.0)))
     about = "The eye inside the volume above a street: faces behind it and through the near plane, rays that look up."
-    params = Params(linear_steps=12, binary_steps=1, interval="volume", shadow_steps=4)
+    params = _params(linear_steps=12, binary_steps=1, interval="volume")
     return _case("street", "adversarial", about, scene, params)
 
 
 def planes() -> Case:
     """Clipping."""
-    camera = _looking(eye=(2.2, -1.5, 0.9), target=(1.2, -0.3, 0.2), near=1.1, far=2.0)
+    camera = _looking(eye=(2.2, -1.5, 0.9), target=(1.2, -0.3, 0.2), near=1.3, far=2.0)
     scene = Scene(polygons=[_sheared()], camera=camera, light=Light(direction=(0.3, -0.5, 1.0)))
     about = "The near and the far plane cut faces, and the near plane what stands on them."
-    return _case("planes", "adversarial", about, scene, Params(linear_steps=16, binary_steps=1))
+    return _case("planes", "adversarial", about, scene, _params(linear_steps=16, binary_steps=0))
 
 
 def low() -> Case:
     """The paper's interval from an eye inside the volume."""
-    camera = _looking(eye=(-0.05, -0.49, 0.13), target=(0.0, 0.3, 0.02), vertical_fov=80.0)
+    camera = _looking(eye=(0.0, -0.3, 0.1), target=(0.0, 0.3, 0.02), vertical_fov=80.0, near=0.2)
     scene = Scene(polygons=[models.box()], camera=camera, light=Light(direction=(0.5, -0.8, 1.0)))
     about = "The eye below the top of the volume: rays that look up are discarded, hits behind the eye are cut away."
-    return _case("low", "adversarial", about, scene, Params(linear_steps=10, binary_steps=1))
+    return _case("low", "adversarial", about, scene, _params(linear_steps=10, binary_steps=1))
 
 
 def crossing() -> Case:
@@ -182,7 +189,22 @@ def crossing() -> Case:
     light = Light(direction=(0.3, -0.5, 1.0))
     scene = Scene(polygons=[_sheared(), upright], camera=camera, light=light, background=(0.2, 0.3, 0.1))
     about = "One volume through another: which is in front changes from pixel to pixel."
-    return _case("crossing", "adversarial", about, scene, Params(linear_steps=16, binary_steps=4))
+    return _case("crossing", "adversarial", about, scene, _params(linear_steps=16, binary_steps=4))
+
+
+def borders() -> Case:
+    """Pixel centres on edges."""
+    camera = Camera.orthographic(
+        eye=(0.0, 0.0, 2.0), target=(0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0), view_height=5.25, near=0.5, far=4.0,
+        width=WIDTH, height=HEIGHT,
+    )  # fmt: skip
+    polygon = BasePolygon(
+        corner=(-0.96875, -0.46875, 0.0), edge_u=(1.0, 0.0, 0.0), edge_v=(0.0, 1.0, 0.0), height_scale=0.25,
+        height_map=_hills(16, 16), color_map=_noise(4, 4, 3, seed=5),
+    )  # fmt: skip
+    scene = Scene(polygons=[polygon], camera=camera, light=Light(direction=(0.3, 0.5, 1.0)))
+    about = "Straight from above, without perspective: edges and a diagonal run through pixel centres."
+    return _case("borders", "adversarial", about, scene, _params())
 
 
 def lamp() -> Case:
@@ -191,7 +213,7 @@ def lamp() -> Case:
     light = Light(position=(-0.3, -0.1, 0.12), specular=0.5, exponent=9)
     scene = Scene(polygons=[models.box()], camera=camera, light=light)
     about = "A lamp inside the volume, beside the box: what is behind it throws no shadow."
-    return _case("lamp", "typical", about, scene, Params(linear_steps=20, binary_steps=4, shadow_steps=12))
+    return _case("lamp", "typical", about, scene, _params(linear_steps=20, binary_steps=4, shadow_steps=12))
 
 
 def dusk() -> Case:
@@ -199,12 +221,12 @@ def dusk() -> Case:
     camera = _looking(eye=(1.0, -1.2, 0.9), target=(0.0, 0.0, 0.0), vertical_fov=32.0)
     scene = Scene(polygons=[models.box()], camera=camera, light=Light(direction=(0.5, -0.8, -0.2)))
     about = "A sun below the polygon's horizon: nothing is lit, but walls face it."
-    return _case("dusk", "easy", about, scene, Params(binary_steps=3, shadow_steps=8))
+    return _case("dusk", "easy", about, scene, _params(binary_steps=3, shadow_steps=8))
 
 
 def _gentle(**more: Any) -> BasePolygon:
     """Low waves in pale colours: filters of eight bits move nothing by a step."""
-    heights = _smooth((12, 16), 0.25, 0.75, 0.1)
+    heights = _smooth((12, 16), 0.45, 0.6, 0.1)
     colors = np.stack([_smooth((4, 5), 0.4, 0.6, phase) for phase in (0.0, 0.3, 0.6)], axis=-1)
     values = {"height_map": heights, "color_map": colors, "facade_map": None}
     return _sheared(**{**values, **more})
@@ -217,24 +239,31 @@ def filtered() -> Case:
         polygons=[_gentle()], camera=camera, light=Light(direction=(0.3, -0.5, 1.0), specular=0.2, exponent=4)
     )
     about = "Gentle maps: a texture unit with eight bits of weight may draw them, and any rounding of positions."
-    return _case("filtered", "typical", about, scene, Params(linear_steps=16, binary_steps=5), "vulkan")
+    return _case("filtered", "typical", about, scene, _params(linear_steps=16, binary_steps=4), "vulkan")
 
 
 def loose() -> Case:
     """The loosest device."""
     camera = _looking(eye=(0.2, -1.9, 1.2), target=(1.3, -0.3, 0.2), vertical_fov=32.0)
-    scene = Scene(polygons=[_gentle(height_scale=0.2)], camera=camera, light=Light(position=(1.0, -1.4, 1.5)))
+    scene = Scene(polygons=[_gentle(height_scale=0.2)], camera=camera, light=Light(position=(1.8, 1.4, 1.5)))
     about = "Gentle maps for OpenGL as it comes: varyings over unsnapped triangles, weights of eight bits."
-    return _case("loose", "typical", about, scene, Params(linear_steps=16, binary_steps=5, shadow_steps=2), "gl")
+    return _case(
+        "loose",
+        "typical",
+        about,
+        scene,
+        _params(linear_steps=16, binary_steps=4, shadow_steps=2, shadow_bias=0.02),
+        "gl",
+    )
 
 
 def metropolis() -> Case:
     """A picture of real size."""
-    camera = _looking(eye=(2.62, -3.18, 2.0), target=(0.0, 0.0, 0.0), vertical_fov=45.0, width=640, height=480)
+    camera = _looking(eye=(2.6, -3.14, 2.02), target=(0.0, 0.0, 0.0), vertical_fov=52.0, width=640, height=480)
     light = Light(direction=(-0.6, -0.5, 0.7), specular=0.3, exponent=37)
     scene = Scene(polygons=[models.city()], camera=camera, light=light, background=(0.5, 0.7, 0.9))
     about = "The whole city at 640 x 480: facades, self-shadow, a highlight."
-    params = Params(linear_steps=40, binary_steps=4, shadow_steps=16)
+    params = _params(linear_steps=40, binary_steps=1, shadow_steps=8)
     return _case("metropolis", "real-sized", about, scene, params)
 
 
@@ -242,7 +271,7 @@ CASES: dict[str, Callable[[], Case]] = {
     f"displacement-{make.__name__}": make
     for make in (
         box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing,
-        metropolis,
+        borders, metropolis,
     )
 }  # fmt: skip
 """By name."""

@@ -62,12 +62,12 @@ def small_file(folder: Path, name: str, most: int, label: object = None) -> byte
 def atomic_folder(folder: Path) -> Iterator[Path]:
     """Make a folder under a temporary name beside `folder`; it takes the name, and the place of what is there, at the end.
 
-    Raises OSError with the path where it cannot be made. Whatever ends the block early leaves nothing behind.
+    Missing folders above it are made. Raises OSError with the path where it cannot be made. Whatever ends the block early
+    leaves nothing behind but those.
     """
-    if not folder.parent.is_dir():
-        raise FileNotFoundError(f"{folder}: the folder {folder.parent} does not exist")
     made: Path | None = None
     try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
         made = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
         yield made
         umask = os.umask(0)

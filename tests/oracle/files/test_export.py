@@ -123,9 +123,14 @@ def test_a_rename_that_fails_brings_the_old_folder_back(
 
 def test_nowhere(maps_case: Case, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    for path in (tmp_path / "missing" / "case", tmp_path / "file" / "case", tmp_path / ("x" * 300)):
+    for path in (tmp_path / "file" / "case", tmp_path / "file" / "deeper" / "case", tmp_path / ("x" * 300)):
         with pytest.raises(OSError, match=path.name):
             export(maps_case, path)
+
+
+def test_missing_folders_are_made(maps_case: Case, tmp_path: Path) -> None:
+    export(maps_case, tmp_path / "cases" / "easy" / "maps")
+    assert load_case(tmp_path / "cases" / "easy" / "maps").name == maps_case.name
 
 
 @pytest.mark.parametrize(

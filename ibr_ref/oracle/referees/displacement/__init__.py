@@ -12,8 +12,10 @@ import numpy as np
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow
 from ibr_ref.oracle.referees.displacement import image, stages
+from ibr_ref.oracle.referees.displacement.parameters import parameters
+from ibr_ref.oracle.referees.displacement.trace import trace
 
 __all__ = ["DisplacementReferee"]
 
@@ -32,3 +34,12 @@ class DisplacementReferee:
         """The final colour, and depth where it is handed in, from the case alone."""
         with np.errstate(all="ignore"):
             return image.judge_image(case, device, handed)
+
+    def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
+        """The computation of one element of a stage, reference and port side by side."""
+        with np.errstate(all="ignore"):
+            return trace(case, device, handed, stage, index)
+
+    def parameters(self, case: Case) -> list[Parameter]:
+        """The continuous parameters that move the image."""
+        return parameters(case)

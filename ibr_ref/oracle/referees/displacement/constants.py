@@ -182,10 +182,14 @@ def _product(a: Matrix, b: Matrix) -> Matrix:
 
 
 def _sparse_dot(a: Sequence[Bounded], b: Sequence[Bounded]) -> Bounded:
-    """Without the terms that are exactly zero in any order, which add no rounding; nor does a factor that is exactly 1."""
-    terms = [_times(x, y) for x, y in zip(a, b, strict=True) if not (_is(x, 0.0) or _is(y, 0.0))]
+    """The sum of products; where sums and products are correctly rounded, 0 and a factor 1 add no error."""
+    device = a[0].device
+    pairs = list(zip(a, b, strict=True))
+    if device.operation > 1.0:
+        return total([x * y for x, y in pairs])
+    terms = [_times(x, y) for x, y in pairs if not (_is(x, 0.0) or _is(y, 0.0))]
     if not terms:
-        return exact(np.zeros(np.broadcast_shapes(*(x.value.shape for x in (*a, *b)))), a[0].device)
+        return exact(np.zeros(np.broadcast_shapes(*(x.value.shape for x in (*a, *b)))), device)
     return total(terms) if len(terms) > 1 else terms[0]
 
 

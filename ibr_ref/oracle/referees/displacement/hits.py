@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,7 +125,7 @@ def window_depth(constants: Constants, hit: Vector) -> tuple[Bounded, Bounded]:
 
 def joined_hits(parts: Sequence[Hits]) -> Hits:
     """One list."""
-    columns = {}
+    columns: dict[str, Any] = {}
     for field in fields(Hits):
         values = [getattr(p, field.name) for p in parts]
         columns[field.name] = joined(values) if isinstance(values[0], Bounded) else np.concatenate(values)

@@ -116,7 +116,7 @@ def judge_image(case: Case, device: Device, handed: Handed) -> Judgement:
     pixels = height * width
     color = np.asarray(handed["color"]).reshape(pixels, 3)
     names = ("color", "depth") if "depth" in handed else ("color",)
-    agrees = [allows_color(accepted.color, color[accepted.pixel]).all(axis=1)]
+    agrees = [np.asarray(allows_color(accepted.color, color[accepted.pixel]).all(axis=1))]
     if "depth" in handed:
         depth = np.asarray(handed["depth"], np.float64).reshape(pixels)
         agrees.append(accepted.depth.allows(depth[accepted.pixel]))

@@ -55,7 +55,7 @@ def shadow_gap(
     """H - (h + bias) at the sample j of S, for some of the hits."""
     device = constants.device
     f = j / (params.shadow_steps + 1)
-    part = Bounded(np.float64(f), np.float64((device.quotient + device.operation) * UNIT * f), device)
+    part = Bounded(np.array(f), np.array((device.quotient + device.operation) * UNIT * f), device)
     u, v, h = [x[some] + q[some] * part for x, q in zip(hit, path, strict=True)]
     level = h + uploaded(params.shadow_bias, device)
     height = constants.textures.height
@@ -105,19 +105,20 @@ class Colors:
 def colors_of(constants: Constants, hit: Vector, albedo: Bounded, normal: Bounded, lit: Bools) -> Colors:
     """clamp(albedo (ambient + diffuse lit max(0, n.l)) + specular lit max(0, r.v)^e where n.l > 0)."""
     ambient, diffuse, specular = constants.phong
-    n = [normal[:, k] for k in range(3)]
+    n, one = [normal[:, k] for k in range(3)], exact(1.0, constants.device)
     world = world_point(constants, hit)
-    to_light = unit(towards(constants.light_world, 1.0, world)) if constants.light_w == 1.0 else constants.light_world
+    to_light = unit(towards(constants.light_world, constants.light_w, world))
     cosine = dot(n, to_light)
     shadow = exact(lit.astype(np.float64), constants.device)
-    bright = diffuse * shadow * cosine.positive()
-    matte = albedo * stacked([ambient + bright] * 3)
+    # Sums are taken as a b + c 1: where products are not exact, that by 1 need not be.
+    bright = dot([diffuse * shadow, ambient], [cosine.positive(), one])
+    matte = albedo * stacked([bright] * 3) * one
     everything = np.arange(len(lit))
     if float(specular.value) == 0.0:
         return Colors(surface=everything, color=matte.between(0.0, 1.0))
-    to_eye = unit(towards(constants.eye_world, 1.0, world)) if constants.eye_w == 1.0 else constants.eye_world
+    to_eye = unit(towards(constants.eye_world, constants.eye_w, world))
     shine = specular * shadow * power(_reflected(n, to_light, to_eye, cosine).positive(), constants.exponent)
-    shiny = matte + stacked([shine] * 3)
+    shiny = matte + stacked([shine * one] * 3)
     may, must = cosine.high > 0.0, cosine.low > 0.0
     front, back = np.flatnonzero(may), np.flatnonzero(~must)
     color = [shiny[front].between(0.0, 1.0), matte[back].between(0.0, 1.0)]

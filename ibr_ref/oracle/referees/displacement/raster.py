@@ -25,6 +25,9 @@ positions, their product, the sum of two, the quotient by the area (whose own pr
 positions, the product with it, and two sums: 9 and a quotient."""
 MIX_ROUNDINGS = 5.0
 """Of a term E_i a_i / w_i in a sum of three, besides one quotient: E_i a_i, the rounding of E_i, and three of the sum."""
+PLANE_ROUNDINGS = 6.0
+"""Of a term of q_0 + b_1 (q_1 - q_0) + b_2 (q_2 - q_0) with q = a/w, besides the quotients of q and b: the rounding of E,
+the difference, the product and three of the sum."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -143,7 +146,7 @@ def _varying(weights: _Weights, triangles: Triangles, t: Ints) -> Bounded:
     """C = (sum b_i a_i / w_i) / (sum b_i / w_i).
 
     With weights b' and w' of the device, C' - C = sum (b'_i / w'_i)(a_i - C) / sum b'_i / w'_i, and the terms without a
-    prime add up to 0. Where the point moves by d, b' - b = d grad b, so that the sum moves by d sum grad b_i (a_i - C) / w_i.
+    prime add up to 0. Where the point moves by d, b' - b = d grad b: the sum moves by d sum grad b_i (a_i - C) / w_i.
     To that come the roundings of b and the errors of w, each for itself, those of a, and the roundings of the two sums.
     """
     device = triangles.clip.device
@@ -155,7 +158,10 @@ def _varying(weights: _Weights, triangles: Triangles, t: Ints) -> Bounded:
         off = (weights.rounding + np.abs(weights.value) * relative[t]) / w.value[t]
         whole = shares.sum(axis=1)
         units = (MIX_ROUNDINGS * device.operation + device.quotient) * UNIT
-        room = whole - off.sum(axis=1) - units * np.abs(shares).sum(axis=1) - weights.moved * _steepness(slopes)
+        plane = (PLANE_ROUNDINGS * device.operation + 2.0 * device.quotient) * UNIT
+        inverse = 1.0 / w.value[t]
+        blur = np.maximum(units * np.abs(shares).sum(axis=1), plane * _plane_size(weights, inverse))
+        room = whole - off.sum(axis=1) - blur - weights.moved * _steepness(slopes)
         result = []
         for k in range(3):
             values, errors = a.value[t, :, k], a.error[t, :, k]
@@ -163,11 +169,18 @@ def _varying(weights: _Weights, triangles: Triangles, t: Ints) -> Bounded:
             away = values - value[:, None]
             moved = weights.moved * _steepness(slopes * away[:, :, None])
             blurred = (off * np.abs(away) + (np.abs(shares) + off) * errors).sum(axis=1)
-            rounded = units * (np.abs(shares) * (np.abs(values) + np.abs(value)[:, None])).sum(axis=1)
+            mixed = units * (np.abs(shares) * np.abs(values)).sum(axis=1)
+            rounded = np.maximum(mixed, plane * _plane_size(weights, values * inverse)) + blur * np.abs(value)
             error = np.where(room > 0.0, (moved + blurred + rounded) / room, np.inf)
             error += device.quotient * UNIT * np.abs(value)
             result.append(Bounded(value, np.where(np.isnan(error), np.inf, error), device))
     return stacked(result)
+
+
+def _plane_size(weights: _Weights, q: Floats) -> Floats:
+    """(n,) the sizes of the terms of a plane through the corners' q (n, 3), from the corner where they are largest."""
+    sizes = [np.abs(q[:, j]) + (np.abs(weights.value) * np.abs(q - q[:, j, None])).sum(axis=1) for j in range(3)]
+    return np.asarray(np.max(sizes, axis=0))
 
 
 def _steepness(gradients: Floats) -> Floats:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,20 +71,20 @@ class Port:
 
     def floats(self, name: str) -> Floats:
         """(pixels,) or (pixels, 3)."""
-        return self._rows(np.asarray(self.handed[name], np.float64))
+        return np.asarray(self._rows(np.asarray(self.handed[name])), np.float64)
 
     def ints(self, name: str) -> Ints:
         """(pixels,)."""
-        return self._rows(np.asarray(self.handed[name]).astype(np.int64))
+        return np.asarray(self._rows(np.asarray(self.handed[name])), np.int64)
 
-    def _rows(self, array: NDArray[np.generic]) -> NDArray[np.generic]:
+    def _rows(self, array: Any) -> Any:
         return array.reshape(self.pixels, *array.shape[2:])
 
     def agreement(self, name: str, pixel: Ints, legal: Bounded | Ints | Bools) -> Bools:
         """Whether the port's numbers at pixels are those of an outcome."""
         if isinstance(legal, Bounded):
             allowed = legal.allows(self.floats(name)[pixel])
-            return allowed if allowed.ndim == 1 else allowed.all(axis=1)
+            return allowed if allowed.ndim == 1 else np.asarray(allowed.all(axis=1))
         return np.asarray(self.ints(name)[pixel] == legal, np.bool_)
 
 
@@ -103,7 +104,8 @@ def raster_input(port: Port) -> tuple[Fragments, tuple[str, ...]]:
     for name in names:
         field = name.partition(".")[2]
         parts = np.split(np.asarray(port.handed[name], np.float64), ends)
-        faces = [replace(f, **{field: exact(part, port.device)}) for f, part in zip(faces, parts, strict=True)]
+        changed: list[dict[str, Any]] = [{field: exact(part, port.device)} for part in parts]
+        faces = [replace(f, **change) for f, change in zip(faces, changed, strict=True)]
     camera = port.case.scene.camera
     with np.errstate(all="ignore"):  # a port's vertices may be anything
         fragments = fragments_of([triangles_of(each) for each in faces], port.device, camera.width, camera.height)
@@ -277,5 +279,6 @@ def light_input(port: Port, hits: Hits, shades: Shades) -> Shades:
     for field in ("albedo", "normal"):
         if f"shade.{field}" in names:
             numbers = port.floats(f"shade.{field}")[hits.pixel[shades.hit]]
-            shades = replace(shades, **{field: exact(numbers, port.device)})
+            change: dict[str, Any] = {field: exact(numbers, port.device)}
+            shades = replace(shades, **change)
     return shades

@@ -197,7 +197,7 @@ def _shade(port: Port, hits: Hits, shades: Shades, lit_pixel: Ints, color: Bound
     wrong &= judged_here
     if "color" in port.handed:
         found = np.asarray(port.handed["color"]).reshape(port.pixels, 3)
-        agrees = allows_color(color, found[lit_pixel]).all(axis=1)
+        agrees = np.asarray(allows_color(color, found[lit_pixel]).all(axis=1))
         bright, _ = judged(lit_pixel, [agrees], port.pixels)
         unseen = np.ones(port.pixels, np.bool_)
         unseen[lit_pixel] = False
@@ -244,9 +244,9 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: Bounded, clean: bool, los
     if "color" in names:
         found = np.asarray(port.handed["color"]).reshape(port.pixels, 3)
         background = uploaded(np.broadcast_to(np.asarray(port.case.scene.background), (len(bare), 3)), port.device)
-        judged_before = np.ones(len(entry), np.bool_)
+        judged_before: Bools = np.ones(len(entry), np.bool_)
         if not port.names("shade"):
-            judged_before = allows_color(color[may_win[lit]], found[hits.pixel[entry]]).all(axis=1)
+            judged_before = np.asarray(allows_color(color[may_win[lit]], found[hits.pixel[entry]]).all(axis=1))
         agrees.append(np.concatenate([judged_before, allows_color(background, found[bare]).all(axis=1)]))
     if "depth" in names:
         depth = joined([hits.depth[entry], exact(np.ones(len(bare)), port.device)]).widened(port.device.depth_step)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,15 +89,15 @@ def _extended_base(constants: Constants) -> Bounded:
 
 
 def _least(values: NDArray[np.float64], other: float) -> NDArray[np.float64]:
-    return np.minimum(values.min(), other)
+    return np.asarray(np.minimum(values.min(), other))
 
 
 def _most(values: NDArray[np.float64], other: float) -> NDArray[np.float64]:
-    return np.maximum(values.max(), other)
+    return np.asarray(np.maximum(values.max(), other))
 
 
 def triangles_of(faces: Faces) -> Triangles:
-    """Each quad (a, b, c, d) as abc and acd, clipped at the near plane, then at the far plane; fans from their first vertex."""
+    """Each quad (a, b, c, d) as abc and acd, clipped at the near, then at the far plane; fans from their first vertex."""
     numbers, clips, patches = [], [], []
     for quad, number in enumerate(faces.numbers):
         for corners in ((0, 1, 2), (0, 2, 3)):
@@ -103,7 +105,7 @@ def triangles_of(faces: Faces) -> Triangles:
             polygon = [stacked([*_components(faces.clip[i]), *_components(faces.patch[i])]) for i in index]
             for plane in (_near, _far):
                 polygon = _cut(polygon, plane)
-            for second, third in zip(polygon[1:], polygon[2:], strict=False):
+            for second, third in pairwise(polygon[1:]):
                 corner_rows = joined([vertex[None] for vertex in (polygon[0], second, third)])
                 numbers.append(number)
                 clips.append(corner_rows[None, :, :4])
@@ -126,12 +128,11 @@ def _far(vertex: Bounded) -> Bounded:
     return vertex[3] - vertex[2]
 
 
-def _cut(polygon: list[Bounded], distance: object) -> list[Bounded]:
+def _cut(polygon: list[Bounded], distance: Callable[[Bounded], Bounded]) -> list[Bounded]:
     """One step of Sutherland and Hodgman, as the reference takes it: a crossing is computed from inside to outside.
 
     A corner on the plane may count as inside or outside: the polygon is the same but for its rounding.
     """
-    assert callable(distance)
     result = []
     for here, there in zip(polygon, polygon[1:] + polygon[:1], strict=True):
         d_here, d_there = distance(here), distance(there)

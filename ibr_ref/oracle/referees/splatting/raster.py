@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,7 +32,7 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     given = {name: np.asarray(handed[name]).reshape(pixels) for name in ARRAYS if name in handed}
     bad = _contradictions(result, given)
     wins = np.bincount(result.pixel, minlength=pixels) + result.empty
-    undecided = (wins > 1) & result.judged
+    undecided = (wins > 1) | (not result.judged)
     width = np.full(pixels, np.nan)
     np.fmax.at(width, result.pixel, 2.0 * result.depth.error[result.splat])
     shape = (camera.height, camera.width)
@@ -74,19 +76,17 @@ def twins(case: Case, splats: Table, handed: Handed) -> Ints | None:
     names = [name for name in ("vertex.window", "vertex.depth", "vertex.width") if name in handed]
     if len(names) < 3:
         return None
-    cameras: list[bytes] = []
-    keys = []
-    for i, image in enumerate(case.scene.images):
-        described = b"".join(
-            np.asarray(m, np.float64).tobytes() for m in (image.camera.world_from_view, image.camera.intrinsics)
-        )
-        if described not in cameras:
-            cameras.append(described)
-        keys.append(np.full(splats.starts[i + 1] - splats.starts[i], cameras.index(described)))
-    columns = [np.concatenate(keys), splats.rows, splats.columns, splats.depth.value]
-    columns += [np.asarray(handed[name], np.float64).reshape(len(splats.rows), -1).T for name in names]
-    rows = np.ascontiguousarray(np.vstack([np.asarray(column, np.float64) for column in columns]).T)
-    if len(cameras) == len(case.scene.images):
+    cameras = [_seen_by(image.camera) for image in case.scene.images]
+    if len(set(cameras)) == len(cameras):
         return None
+    keys = np.repeat([cameras.index(camera) for camera in cameras], np.diff(splats.starts))
+    columns = [keys, splats.rows, splats.columns, splats.depth.value]
+    columns += [np.asarray(handed[name], np.float64).reshape(len(keys), -1).T for name in names]
+    rows = np.ascontiguousarray(np.vstack(columns).T, np.float64)
     _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True, equal_nan=False)
     return np.asarray(first[inverse.reshape(-1)], np.int64)
+
+
+def _seen_by(camera: Any) -> bytes:
+    """What a point of a reference camera hangs on."""
+    return b"".join(np.asarray(m, np.float64).tobytes() for m in (camera.world_from_view, camera.intrinsics))

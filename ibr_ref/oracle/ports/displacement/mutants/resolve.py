@@ -12,11 +12,13 @@ from ibr_ref.oracle.ports.displacement.port import Port
 from ibr_ref.oracle.ports.displacement.resolve import Drawn
 
 RESOLVE = Bugs("resolve")
+WRITTEN = Bugs("shade")
+"""Colours that are written wrongly: nothing tells them from colours that are computed wrongly, which are shading's."""
 
 MONOTONE = "depths keep their order, and the picture shows nothing else of them"
 
 
-@RESOLVE.add("LEQUAL")
+@RESOLVE.add("LEQUAL", survives="depths that tie here need not tie on another device: either polygon may be shown")
 class _LessOrEqual(Port):
     """On a tie in depth the later fragment wins."""
 
@@ -106,7 +108,7 @@ class _BlackBackground(Port):
         return np.zeros(3)
 
 
-@RESOLVE.add("rows of the picture upside down")
+@WRITTEN.add("rows of the picture upside down")
 class _FlippedColor(Port):
     """The colour buffer's row 0 is the bottom; everything else is right."""
 
@@ -114,7 +116,7 @@ class _FlippedColor(Port):
         return super().written(color)[::-1]
 
 
-@RESOLVE.add("picture in BGR")
+@WRITTEN.add("picture in BGR")
 class _BgrPicture(Port):
     """Red and blue of the picture are swapped."""
 
@@ -122,7 +124,7 @@ class _BgrPicture(Port):
         return super().written(color)[..., ::-1]
 
 
-@RESOLVE.add("picture in sRGB")
+@WRITTEN.add("picture in sRGB")
 class _SrgbPicture(Port):
     """The frame buffer encodes colours, about their root."""
 
@@ -130,7 +132,7 @@ class _SrgbPicture(Port):
         return super().written(color ** (1.0 / 2.2))
 
 
-@RESOLVE.add("colours truncated to bytes", small=True)
+@WRITTEN.add("colours truncated to bytes", small=True)
 class _TruncatedBytes(Port):
     """floor(255 c) without the half."""
 
@@ -138,7 +140,7 @@ class _TruncatedBytes(Port):
         return np.floor(np.clip(color, 0.0, 1.0) * 255.0) / 255.0
 
 
-@RESOLVE.add("colours in 256 steps", small=True)
+@WRITTEN.add("colours in 256 steps", small=True)
 class _Steps256(Port):
     """Bytes are floor(256 c), and read as k/256."""
 

@@ -1,0 +1,67 @@
+"""Cases, drawn by ports: each at most once, as several tests look at the same pictures."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.cases.displacement import CASES
+from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.ports.arithmetic import Policy
+from ibr_ref.oracle.ports.displacement.port import Port
+from ibr_ref.oracle.referees.displacement import DisplacementReferee
+
+Arrays = dict[str, Any]
+
+REFEREE = DisplacementReferee()
+REAL_SIZED = "displacement-metropolis"
+SMALL = tuple(name for name in CASES if name != REAL_SIZED)
+
+
+@cache
+def case(name: str) -> Case:
+    return CASES[name]()
+
+
+def reference(name: str) -> Arrays:
+    frame = case(name).frame
+    return {**frame.stages, "color": frame.color, "depth": frame.depth}
+
+
+def as_bytes(color: np.ndarray) -> np.ndarray:
+    return np.floor(255.0 * np.clip(color, 0.0, 1.0) + 0.5).astype(np.uint8)
+
+
+def draw(name: str, policy: Policy, port: type[Any] | None = None) -> Arrays:
+    """All arrays of a plain port; a picture of eight bits as bytes."""
+    what = case(name)
+    arrays = (port or Port)(what.scene, what.params, policy, what.inputs).render()
+    if policy.color_bits == 8:
+        arrays["color"] = as_bytes(arrays["color"])
+    return arrays
+
+
+def wrong(judgements: list[Judgement]) -> list[tuple[str, str, int, list[int]]]:
+    """Of each stage that has any: the array that is blamed first, how many elements, the first of them."""
+    found = []
+    for judgement in judgements:
+        if judgement.wrong.any():
+            first = np.argwhere(judgement.wrong)[0]
+            name = judgement.arrays[judgement.blame[tuple(first)]]
+            found.append((judgement.stage, name, int(judgement.wrong.sum()), first.tolist()))
+    return found
+
+
+def image(arrays: Arrays) -> Arrays:
+    """The final picture alone."""
+    return {name: arrays[name] for name in ("color", "depth")}
+
+
+def profiles_from(name: str) -> list[str]:
+    """A profile and all that are looser."""
+    names = list(PROFILES)
+    return names[names.index(name) :]

@@ -1,0 +1,49 @@
+"""Draw an exported case in GLSL: `python -m tests.ports CASE PORT`, two folders, from the repository's root.
+
+CASE is what `ibr-ref export` wrote; PORT receives what the port has drawn, for `ibr-ref check CASE PORT`.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from tests.ports import displacement, gl, shadows, splatting
+from tests.ports.case_folder import GivenCase, read_case
+
+PROFILE = "gl"
+"""What the port claims to be: OpenGL."""
+
+
+def main() -> None:
+    """Read, draw, write."""
+    if len(sys.argv) != 3:
+        sys.exit("usage: python -m tests.ports CASE PORT")
+    case = read_case(Path(sys.argv[1]))
+    try:
+        frame = draw(case)
+    except ValueError as error:
+        sys.exit(f"{case.name} is not ported: {error}")
+    write(frame, case, Path(sys.argv[2]))
+
+
+def draw(case: GivenCase, device: gl.Device | None = None) -> gl.Frame:
+    """A frame with all stages. Raises ValueError with the feature that is not ported."""
+    ports = {"displacement": displacement.Port, "splatting": splatting.Port, "shadows": shadows.Port}
+    return ports[case.method](device).render(case.scene, case.params)
+
+
+def write(frame: gl.Frame, case: GivenCase, folder: Path) -> None:
+    """NAME.npy of all arrays that the case has names for, the picture as bytes too, and what the port claims to be."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, array in {"color": frame.color, "depth": frame.depth, **frame.stages}.items():
+        if name in case.expected:
+            np.save(folder / f"{name}.npy", np.ascontiguousarray(array))
+    (folder / "port.json").write_text(json.dumps({"profile": PROFILE}) + "\n")
+
+
+if __name__ == "__main__":
+    main()
