@@ -2,8 +2,8 @@
 
 The scene is that of an exported case, as case_folder.py reads it; nothing of `ibr_ref` is imported. Ported is
 method="protruded" with all intervals, domains, faces and depths, normal map, facade map and self-shadow. Per polygon the
-host does in float64 what an application does once per object: matrices, the eye and the light in patch space, the choice
-of the faces; all else happens in the shaders.
+host does in float64 what an application does once per object: matrices, the eye and the light in patch space, the choice of
+the faces; all else happens in the shaders.
 """
 
 from __future__ import annotations

@@ -42,6 +42,15 @@ class Programs:
             self._linked[key] = self._device.ctx.program(vertex_shader=sources[0], fragment_shader=sources[1])
         return self._linked[key]
 
+    def capture(self, vertex: str, varying: str, *flags: str) -> moderngl.Program:
+        """The vertex shader alone with CAPTURE defined, for transform feedback of one varying."""
+        key = (vertex, varying, "CAPTURE", *flags)
+        if key not in self._linked:
+            head = "#version 450 core\n" + "".join(f"#define {flag}\n" for flag in ("CAPTURE", *flags))
+            source = head + gl.source(f"shadows_{vertex}.vert")
+            self._linked[key] = self._device.ctx.program(vertex_shader=source, varyings=[varying])
+        return self._linked[key]
+
 
 def column_major(matrix: np.ndarray) -> bytes:
     """A (4, 4) matrix as a mat4 uniform takes it."""
@@ -86,7 +95,7 @@ class Pass:
 
 
 class CasterMaps:
-    """Stage 1: maps of the caster alone, of one sample a texel."""
+    """Stage 1: maps of the caster alone; masks of k x k samples a texel are rendered as large and counted."""
 
     def __init__(self, device: gl.Device, programs: Programs, scene: Any, params: Any) -> None:
         self._scene, self._device, self._depth = scene, device, params.content == "depth"
@@ -95,7 +104,8 @@ class CasterMaps:
         vertices = device.ctx.buffer(np.asarray(scene.caster.vertices, np.float32).tobytes())
         indices = device.ctx.buffer(np.asarray(scene.caster.triangles, np.uint32).tobytes())
         vao = device.ctx.vertex_array(self._program, [(vertices, "3f", "in_position")], index_buffer=indices)
-        self._vao, self._size = vao, int(params.map_size)
+        self._samples = 1 if self._depth else int(params.map_samples)
+        self._vao, self._size = vao, int(params.map_size) * self._samples
         if self._depth:
             self._target: Any = gl.create_target(device, self._size, self._size, {"map": (1, "f4")})
             self._target.clears = {"map": (1.0,)}
@@ -105,6 +115,11 @@ class CasterMaps:
             self._target = Pass.of(device, self._size, self._size, "f1")
             self.texture = self._target.texture
         self._owned = [vao, vertices, indices, self._target]
+        if self._samples > 1:
+            self._counted = Pass.of(device, int(params.map_size), int(params.map_size), "f4")
+            self._count = device.ctx.vertex_array(programs.get("screen", "count"), [])
+            self.texture = self._counted.texture
+            self._owned += [self._counted, self._count]
 
     def draw(self, camera: Any, offset: np.ndarray) -> None:
         """The map of the object at `offset`, as the camera of a light sample sees it."""
@@ -115,9 +130,17 @@ class CasterMaps:
         self._device.ctx.enable_only(moderngl.DEPTH_TEST if self._depth else moderngl.NOTHING)
         self._device.ctx.depth_func = "<"
         self._vao.render(moderngl.TRIANGLES)
+        if self._samples > 1:
+            self._count.program["samples"].value = self._samples
+            self._target.texture.use(0)
+            self._counted.begin()
+            self._device.ctx.enable_only(moderngl.NOTHING)
+            self._count.render(moderngl.TRIANGLES, vertices=3)
 
     def read(self) -> np.ndarray:
         """(S, S) float64 of the map that was drawn last."""
+        if self._samples > 1:
+            return self._counted.read()
         return self._target.read("map")[..., 0].astype(np.float64) if self._depth else self._target.read()
 
     def release(self) -> None:
@@ -139,6 +162,10 @@ class WarpedMaps:
     """By the number of the first map: the mesh between it and the next along x."""
     column_vaos: dict[int, moderngl.VertexArray]
     """By the number of map 00: the mesh between its row and the next."""
+    capture_vaos: dict[tuple[int, ...], moderngl.VertexArray]
+    """By the numbers of the two or four maps: the mesh between them, as transform feedback hands it back."""
+    shape: tuple[int, int]
+    """Rows and columns of the meshes."""
     nearest: bool
     outside: float
     owned: list[Any] = field(default_factory=list)
@@ -157,6 +184,22 @@ class WarpedMaps:
             self._warp(row, self.row_vaos[number], self.images[number], self.images[number + 1], (s, t), s)
         top, bottom = self.rows
         self._warp(self.result, self.column_vaos[first], top.texture, bottom.texture, (s, t), t)
+
+    def grids(self, cell: Sequence[int], fraction: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+        """The meshes (2, R, C, 2) of the rows and (R, C, 2) of the result, as the vertex shader makes them."""
+        n = 3 * cell[1] + cell[0]
+        found = [self._captured(each, fraction) for each in ((n, n + 1), (n + 3, n + 4), (n, n + 1, n + 3, n + 4))]
+        return np.stack(found[:2]), found[2]
+
+    def _captured(self, numbers: tuple[int, ...], fraction: Sequence[float]) -> np.ndarray:
+        vao, count = self.capture_vaos[numbers], self.shape[0] * self.shape[1]
+        result = self.device.ctx.buffer(reserve=8 * count)
+        vao.program["fraction"].value = tuple(fraction)
+        self.result.fbo.use()  # a draw call wants a complete frame buffer, even if nothing is rasterized
+        vao.transform(result, moderngl.POINTS, vertices=count)
+        points = np.frombuffer(result.read(), np.float32).reshape(*self.shape, 2).copy()
+        result.release()
+        return points
 
     def _warp(
         self,
@@ -197,15 +240,20 @@ def create_warped_maps(
     points = device.ctx.buffer(controls.reshape(9, -1, 2).transpose(1, 0, 2).astype(np.float32).tobytes())
     indices = device.ctx.buffer(mesh_indices(rows, columns).tobytes())
 
-    def mesh(program: moderngl.Program, numbers: Sequence[int]) -> moderngl.VertexArray:
+    def mesh(program: moderngl.Program, numbers: Sequence[int], *, indexed: bool = True) -> moderngl.VertexArray:
         names = ("in_a", "in_b", "in_c", "in_d")[: len(numbers)]
         fields = " ".join("2f" if number in numbers else "8x" for number in range(9))
-        return device.ctx.vertex_array(program, [(points, fields, *names)], index_buffer=indices)
+        return device.ctx.vertex_array(program, [(points, fields, *names)], index_buffer=indices if indexed else None)
 
     row_program = programs.get("warp", "warp", *flags)
     column_program = programs.get("warp", "warp", "COLUMN", *flags)
     row_vaos = [mesh(row_program, (n, n + 1)) if n % 3 < 2 else None for n in range(9)]
     column_vaos = {n: mesh(column_program, (n, n + 1, n + 3, n + 4)) for n in (0, 1, 3, 4)}
+    row_capture, column_capture = programs.capture("warp", "place"), programs.capture("warp", "place", "COLUMN")
+    capture_vaos = {(n, n + 1): mesh(row_capture, (n, n + 1), indexed=False) for n in range(9) if n % 3 < 2}
+    for n in (0, 1, 3, 4):
+        numbers = (n, n + 1, n + 3, n + 4)
+        capture_vaos[numbers] = mesh(column_capture, numbers, indexed=False)
     return WarpedMaps(
         device=device,
         images=[gl.upload(device, each, dtype=dtype) for each in image.reshape(9, size, size)],
@@ -213,9 +261,11 @@ def create_warped_maps(
         result=Pass.of(device, size, size, dtype),
         row_vaos=row_vaos,
         column_vaos=column_vaos,
+        capture_vaos=capture_vaos,
+        shape=(rows, columns),
         nearest=params.policy == "nearest",
         outside=0.0 if params.content == "mask" else 1.0,
-        owned=[*(vao for vao in row_vaos if vao), *column_vaos.values(), points, indices],
+        owned=[*(vao for vao in row_vaos if vao), *column_vaos.values(), *capture_vaos.values(), points, indices],
     )
 
 

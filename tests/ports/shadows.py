@@ -1,8 +1,8 @@
 """Shadows by image warping on OpenGL: the same inputs as `ibr_ref.shadows.render`, in float32 GLSL.
 
 Scene, parameters and prepared maps are those of an exported case, as case_folder.py reads it; nothing of `ibr_ref` is
-imported. Ported are method="warp" and "direct",
-masks and depths, both policies, every way to compare, and both ways to accumulate. The passes of a frame:
+imported. Ported are method="warp" and "direct", masks and depths, both policies, every way to compare, and both ways to
+accumulate; not the grid of many maps. The passes of a frame:
 
 1. receivers and caster into two attachments: world position and kind; colour and max(0, n . l);
 2. per light sample the map, warped or rendered (shadow_maps.py), and one screen-filling triangle that projects it onto the
@@ -15,6 +15,7 @@ filters, colours and n . l are bytes, and so are masks, if wished: what an appli
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import Any
 
@@ -137,11 +138,8 @@ class Prepared:
 
     def _stages(self) -> dict[str, np.ndarray]:
         """Maps and projections per sample, as the specification groups them, and their sum."""
-        place = self.target.read("place")
         result = gl.create_target(self.device, *self.picture.fbo.size, {"result": (4, "f4")})
-        stages: dict[str, list[np.ndarray]] = {"warp.image": [], "project.coord": [], "project.shadow": []}
-        if isinstance(self.source, WarpedMaps):
-            stages["warp.rows"] = []
+        stages: dict[str, list[np.ndarray]] = defaultdict(list)
         for sample in self.scene.light_samples:
             self._draw_map(sample)
             self._set_projection(self.coordinates.program, sample)
@@ -151,14 +149,27 @@ class Prepared:
             projected = result.read("result").astype(np.float64)
             stages["warp.image"].append(self.read_map())
             if isinstance(self.source, WarpedMaps):
-                stages["warp.rows"].append(np.stack([row.read() for row in self.source.rows]))
+                for name, array in self._warp_stages(self.source, sample).items():
+                    stages[name].append(array)
             stages["project.coord"].append(projected[..., :3])
             stages["project.shadow"].append(projected[..., 3])
         result.release()
         single = len(self.scene.light_samples) == 1
         arrays = {name: each[0] if single else np.stack(each) for name, each in stages.items()}
-        shown = {"raster.world": place[..., :3].astype(np.float64), "raster.kind": place[..., 3].astype(np.int32)}
-        return arrays | shown | {"accumulate.shadow": np.minimum(self.accumulated.read(), 1.0)}
+        return arrays | {"accumulate.shadow": np.minimum(self.accumulated.read(), 1.0)}
+
+    def _warp_stages(self, source: WarpedMaps, sample: Any) -> dict[str, np.ndarray]:
+        """Where the sample's map lies among the nine, the meshes and the rows."""
+        cell, fraction = place_in_cell(self.scene.maps.positions, sample.seen_offset)
+        rows = np.stack([row.read() for row in source.rows])
+        row_grids, grid = source.grids(cell, fraction)
+        return {
+            "warp.cell": np.array(cell, np.int32),
+            "warp.fraction": np.array(fraction),
+            "warp.row_grids": row_grids,
+            "warp.rows": rows,
+            "warp.grid": grid,
+        }
 
 
 class Port:
@@ -179,7 +190,6 @@ class Port:
 
     def maps(self, scene: Any, params: Any) -> np.ndarray:
         """Stage 1: (3, 3, S, S) maps of the caster at the nine positions, seen from the light's centre."""
-        _check(params, rendered=True)
         caster = CasterMaps(self.device, self._programs, scene, params)
         images = []
         for offset in scene.maps.positions.reshape(9, 2):
@@ -195,7 +205,7 @@ class Port:
 
         Raises ValueError for methods and maps that are not ported.
         """
-        _check(params, rendered=params.method == "direct")
+        _check(params)
         ctx, camera = self.device.ctx, scene.camera
         size = int(camera.width), int(camera.height)
         rows = _vertices(scene)
@@ -256,9 +266,7 @@ def _flags(params: Any, stages: bool) -> list[str]:
     return [name for name, present in flags.items() if present]
 
 
-def _check(params: Any, *, rendered: bool) -> None:
+def _check(params: Any) -> None:
     """Refuse what is not ported."""
     if params.method not in ("warp", "direct"):
         raise ValueError(f"method = {params.method!r}: the port allows warp, direct")
-    if rendered and params.content == "mask" and params.map_samples != 1:
-        raise ValueError(f"map_samples = {params.map_samples}: the port renders masks of 1 sample a texel")

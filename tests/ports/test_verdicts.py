@@ -43,3 +43,61 @@ def test_the_port_passes(name: str, device: Any, tmp_path: Path, record_property
     for stage in verdict.stages:
         print(f"{name}, {stage.stage}: width {stage.median_width}, {stage.undecided} of {stage.elements} undecided")
     print(f"{name}: {verdict.profile} by {device.renderer}; undecided by {case.profile} {own.undecided.mean():.3%}")
+
+
+BROKEN = {
+    "the threshold on the wrong difference": (
+        "displacement-slope",
+        "displacement.frag",
+        ("hit.position.z - hit.before > STEEP_THRESHOLD", "hit.before - hit.position.z > STEEP_THRESHOLD"),
+        "march",
+    ),
+    "the sign of the shadow's bias": (
+        "displacement-city",
+        "displacement.frag",
+        ("point.z + SHADOW_BIAS < height", "point.z - SHADOW_BIAS < height"),
+        "shade",
+    ),
+    "the sign of the depths' bias": (
+        "shadows-direct",
+        "shadows_project.frag",
+        ("rounded(r - bias)", "rounded(r + bias)"),
+        "project",
+    ),
+    "the rows of the mesh exchanged": (
+        "shadows-bent",
+        "shadows_warp.vert",
+        ("vec2 second = lerp(in_c, in_d, fraction.x);", "vec2 second = lerp(in_d, in_c, fraction.x);"),
+        "warp",
+    ),
+    "the size as a radius": (
+        "splatting-sprites",
+        "splatting.vert",
+        ("gl_PointSize = size;", "gl_PointSize = 2.0 * size;"),
+        "raster",
+    ),
+    "the distance instead of its square": (
+        "splatting-lamp",
+        "splatting.vert",
+        ("law.y * (d * d)", "law.y * d"),
+        "vertex",
+    ),
+}
+"""One deliberate edit each: the case, the file, what is replaced by what, and the stage in which it must be found."""
+
+
+@pytest.mark.parametrize("mistake", BROKEN)
+def test_a_broken_port_fails_in_the_right_stage(
+    mistake: str, device: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tests.ports import gl
+
+    name, file, (right, wrong), stage = BROKEN[mistake]
+    read = gl.source
+    assert read(file).count(right) == 1
+    monkeypatch.setattr(gl, "source", lambda each: read(each).replace(right, wrong) if each == file else read(each))
+    verdict = examined(name, device, tmp_path).verdict
+    print(verdict.words())
+    assert verdict.outcome is Outcome.FAIL
+    assert verdict.first_wrong_stage == stage
+    assert verdict.witness is not None
