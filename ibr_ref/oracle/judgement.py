@@ -79,8 +79,9 @@ class Parameter:
 class Referee(Protocol):
     """A method's judge."""
 
-    stages: Sequence[str]
-    """In the order of the pipeline, without "image"."""
+    @property
+    def stages(self) -> Sequence[str]:
+        """In the order of the pipeline, without "image"."""
 
     def judge_stages(self, case: Case, device: Device, handed: Handed) -> list[Judgement]:
         """Every stage of which an array is handed in, in order, each fed with the port's own arrays of the stages before."""

@@ -129,8 +129,8 @@ def _edges(edges, t, row):
 
 
 @device
-def _weights(edges, first, stop, l0, l1, l2):
-    """l_0, l_1, l_2 of the columns [first, stop).
+def _interpolate(edges, t, first, stop, corners, u, v, other_corners, other_u, other_v):
+    """Texture coordinates of triangle t's columns [first, stop), in one image or in two.
 
     The edge functions as floats are exact: integers below 2^53.
     """
@@ -138,21 +138,21 @@ def _weights(edges, first, stop, l0, l1, l2):
     e0, step0 = np.float64(edges.e0), np.float64(edges.step0)
     e1, step1 = np.float64(edges.e1), np.float64(edges.step1)
     e2, step2 = np.float64(edges.e2), np.float64(edges.step2)
-    for i in range(np.uintp(first), np.uintp(stop)):
-        column = np.float64(np.int32(i))
-        l0[i] = (e0 + step0 * column) / total
-        l1[i] = (e1 + step1 * column) / total
-        l2[i] = (e2 + step2 * column) / total
-
-
-@device
-def _interpolate(l0, l1, l2, corners, t, first, stop, u, v):
-    """Texture coordinates of triangle t's columns [first, stop)."""
     u0, u1, u2 = corners[t, 0, 0], corners[t, 1, 0], corners[t, 2, 0]
     v0, v1, v2 = corners[t, 0, 1], corners[t, 1, 1], corners[t, 2, 1]
+    if other_corners is not None:
+        a0, a1, a2 = other_corners[t, 0, 0], other_corners[t, 1, 0], other_corners[t, 2, 0]
+        b0, b1, b2 = other_corners[t, 0, 1], other_corners[t, 1, 1], other_corners[t, 2, 1]
     for i in range(np.uintp(first), np.uintp(stop)):
-        u[i] = l0[i] * u0 + l1[i] * u1 + l2[i] * u2
-        v[i] = l0[i] * v0 + l1[i] * v1 + l2[i] * v2
+        column = np.float64(np.int32(i))
+        l0 = (e0 + step0 * column) / total
+        l1 = (e1 + step1 * column) / total
+        l2 = (e2 + step2 * column) / total
+        u[i] = l0 * u0 + l1 * u1 + l2 * u2
+        v[i] = l0 * v0 + l1 * v1 + l2 * v2
+        if other_corners is not None:
+            other_u[i] = l0 * a0 + l1 * a1 + l2 * a2
+            other_v[i] = l0 * b0 + l1 * b1 + l2 * b2
 
 
 @device
@@ -188,7 +188,7 @@ def _joined(a, b, c, d):
 
 
 @device
-def _rasterize(mesh, chosen, source, other, row, weights, uv, other_uv):
+def _rasterize(mesh, chosen, source, other, row, uv, other_uv):
     """Texture coordinates of a row of the map, of all chosen triangles in order; NaN where none is or all is blank.
 
     Gives the columns [begin, end) beside which they are all NaN.
@@ -196,9 +196,8 @@ def _rasterize(mesh, chosen, source, other, row, weights, uv, other_uv):
     # Taken apart before the loop: what is taken out of a tuple or an array in it is counted, two atomic operations each.
     edges, box, solid = mesh
     spans, corners = source.spans, source.corners
-    other_spans = spans if other is None else other.spans
-    other_corners = corners if other is None else other.corners
-    l0, l1, l2 = weights[0], weights[1], weights[2]
+    other_spans = None if other is None else other.spans
+    other_corners = None if other is None else other.corners
     u, v, other_u, other_v = uv[0], uv[1], other_uv[0], other_uv[1]
     width = len(u)
     begin, end = width, 0
@@ -217,13 +216,11 @@ def _rasterize(mesh, chosen, source, other, row, weights, uv, other_uv):
         if other is not None:
             c, d = _live_run(here, first, stop, np.float64(width), other_spans, other_corners, t)
             a, b = _joined(a, b, c, d)
-        for i in range(np.uintp(first), np.uintp(stop)):
-            u[i] = np.nan
+        if first < end and stop > begin:
+            for i in range(np.uintp(first), np.uintp(stop)):
+                u[i] = np.nan
         if a < b:
-            _weights(here, a, b, l0, l1, l2)
-            _interpolate(l0, l1, l2, corners, t, a, b, u, v)
-            if other is not None:
-                _interpolate(l0, l1, l2, other_corners, t, a, b, other_u, other_v)
+            _interpolate(here, t, a, b, corners, u, v, other_corners, other_u, other_v)
             begin, end = min(begin, a), max(end, b)
     return begin, end
 
@@ -265,12 +262,12 @@ def _fill(source, other, share, size, uv, other_uv, begin, end, index, fraction,
 @device
 def _draw_band(source, other, share, mesh, outside, first_row, last_row, out, out_spans):
     size = out.shape[1]
-    weights, uv, other_uv, spare = np.empty((3, size)), np.empty((2, size)), np.empty((2, size)), np.empty(size)
+    uv, other_uv, spare = np.empty((2, size)), np.empty((2, size)), np.empty(size)
     index, fraction = np.empty((4, size), np.uint32), np.empty((2, size))
     near = np.empty(len(mesh.box), np.int64)
     chosen = near[: _in_rows(mesh.box, first_row, last_row, near)]
     for row in range(first_row, last_row):
-        a, b = _rasterize(mesh, chosen, source, other, row, weights, uv, other_uv)
+        a, b = _rasterize(mesh, chosen, source, other, row, uv, other_uv)
         out_spans[row, 0], out_spans[row, 1] = a, b
         out[row, : min(a, b)] = outside
         if a < b:

@@ -113,10 +113,9 @@ def _finite(error: Floats) -> Floats:
 
 def _spread_around(texture: Texture, x: Floats, y: Floats, off_x: Floats, off_y: Floats, value: Floats) -> Floats:
     """The largest difference from `value` in the boxes around x, y."""
-    error = np.zeros_like(value)
-    for at_x in _stations(x, off_x):
-        for at_y in _stations(y, off_y):
-            error = np.maximum(error, np.abs(texture.bilinear(at_x, at_y) - value))
+    at_x, at_y = np.stack(_stations(x, off_x))[:, None], np.stack(_stations(y, off_y))[None]
+    found = texture.bilinear(*np.broadcast_arrays(at_x, at_y))
+    error = np.asarray(np.abs(found - value).max(axis=(0, 1)))
     wide = np.maximum(off_x, off_y)
     for reach in (1, 2, 4, 8, 16):
         # More than one border may cut the box; its texels are these, no farther from the nearest one than off and a texel.
@@ -126,7 +125,8 @@ def _spread_around(texture: Texture, x: Floats, y: Floats, off_x: Floats, off_y:
             columns, rows = (np.floor(np.clip(c[here], -1e9, 1e9)).astype(np.int64) for c in (x, y))
             least, most = (Texture(e, texture.repeat).at(rows, columns) for e in texture.extremes(reach + 1))
             error[here] = np.maximum(most - value[here], value[here] - least)
-    error[wide >= 0.5] = np.ptp(texture.texels)
+    if (wide >= 0.5).any():
+        error[wide >= 0.5] = np.ptp(texture.texels)
     return error
 
 

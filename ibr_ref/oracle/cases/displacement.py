@@ -173,7 +173,7 @@ def planes() -> Case:
 
 def low() -> Case:
     """The paper's interval from an eye inside the volume."""
-    camera = _looking(eye=(0.0, -0.3, 0.1), target=(0.0, 0.3, 0.02), vertical_fov=80.0, near=0.2)
+    camera = _looking(eye=(-0.05, -0.49, 0.13), target=(0.0, 0.3, 0.02), vertical_fov=80.0, near=0.15)
     scene = Scene(polygons=[models.box()], camera=camera, light=Light(direction=(0.5, -0.8, 1.0)))
     about = "The eye below the top of the volume: rays that look up are discarded, hits behind the eye are cut away."
     return _case("low", "adversarial", about, scene, _params(linear_steps=10, binary_steps=1))

@@ -248,8 +248,8 @@ def coarse() -> Case:
 
 def thin() -> Case:
     """Thin things."""
-    about = "A rack of thin bars under nine light samples, the 8-bit frame buffer."
-    params = _params(light_samples=9, map_samples=2, accumulation="unorm8")
+    about = "A rack of thin bars under five light samples, the 8-bit frame buffer."
+    params = _params(light_samples=5, map_samples=2, accumulation="unorm8")
     return _case("thin", "adversarial", about, _scene(caster=rack()), params, profile="webgpu")
 
 

@@ -46,6 +46,6 @@ def test_looser_profiles_accept_no_less(name: str) -> None:
     shown = reference(name)["march.hit_index"] >= 0
     widths = [np.nanmedian(each.width[shown]) for each in found]
     assert widths == sorted(widths)
-    assert widths[0] < 1.5e-2
+    assert widths[0] < 8.0 / 255.0
     open_ = [each.undecided.mean() for each in found]
     assert open_ == sorted(open_)

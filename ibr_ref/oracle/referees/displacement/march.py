@@ -115,7 +115,7 @@ def inside(search: Search, fragment: Ints, index: Ints) -> tuple[Bools, Bools]:
 
 def compared(search: Search, fragment: Ints, index: Ints) -> tuple[Bounded, Bools, Bools]:
     """H - h at samples, and whether they may and must count: outside the domain they are empty (the gap is NaN there)."""
-    u, v, h = search.rays.take(fragment).at(index, search.lattice)
+    u, v, h = search.rays.at(fragment, index, search.lattice)
     may_count, must_count = domain(search, u, v)
     height = search.constants.textures.height
     near = np.flatnonzero(may_count & ~(h.low > height.largest))
@@ -191,7 +191,7 @@ def _placed(search: Search, fragment: Ints, step: Ints, index: Ints) -> Outcomes
     """Where the outcomes lie, and whether on a wall: both ways where that is a matter of rounding."""
     device = search.constants.device
     kept, stopped = index >= 0, step >= 0
-    hit = search.rays.take(fragment).at(np.where(kept, index, search.lattice), search.lattice)
+    hit = search.rays.at(fragment, np.where(kept, index, search.lattice), search.lattice)
     ground = kept & ~stopped
     hit[2] = Bounded(np.where(ground, 0.0, hit[2].value), np.where(ground, 0.0, hit[2].error), device)
     hit = [Bounded(np.where(kept, x.value, np.nan), np.where(kept, x.error, 0.0), device) for x in hit]
@@ -219,7 +219,7 @@ def _heights_before(search: Search, fragment: Ints, step: Ints) -> tuple[Bounded
     some = np.flatnonzero(step > 0)
     if len(some):
         before = (step[some] - 1) << search.params.binary_steps
-        u, v, _ = search.rays.take(fragment[some]).at(before, search.lattice)
+        u, v, _ = search.rays.at(fragment[some], before, search.lattice)
         may, must = domain(search, u, v)
         height = fetch(search.constants.textures.height, u, v)
         value[some], error[some] = height.value, height.error

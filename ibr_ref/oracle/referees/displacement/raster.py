@@ -185,7 +185,8 @@ def _plane_size(weights: _Weights, q: Floats) -> Floats:
 
 def _steepness(gradients: Floats) -> Floats:
     """(n,) how much a sum with these gradients (n, 3, 2) of its terms changes at most, where x and y move by 1."""
-    return np.asarray(np.abs(gradients.sum(axis=1)).sum(axis=1))
+    along = gradients[:, 0] + gradients[:, 1] + gradients[:, 2]
+    return np.asarray(np.abs(along[:, 0]) + np.abs(along[:, 1]))
 
 
 def _linear(weights: _Weights, z: Bounded, t: Ints) -> Bounded:

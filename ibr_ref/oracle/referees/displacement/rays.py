@@ -26,19 +26,10 @@ class Rays:
     """The ray may lead down from the eye, as the paper's interval needs it."""
     must_go: Bools
 
-    def take(self, index: Ints) -> Rays:
-        """Some of them."""
-        return Rays(
-            start=[x[index] for x in self.start],
-            end=[x[index] for x in self.end],
-            may_go=self.may_go[index],
-            must_go=self.must_go[index],
-        )
-
-    def at(self, index: Ints, lattice: int) -> Vector:
-        """p(k/K), whether as B (1 - t) + A t or as B + (A - B) t."""
+    def at(self, rays: Ints, index: Ints, lattice: int) -> Vector:
+        """p(k/K) of some rays, whether as B (1 - t) + A t or as B + (A - B) t."""
         t = fraction(index, lattice, self.start[0])
-        return [lerp(start, end, t) for start, end in zip(self.start, self.end, strict=True)]
+        return [lerp(start[rays], end[rays], t) for start, end in zip(self.start, self.end, strict=True)]
 
 
 def fraction(index: Ints, lattice: int, like: Bounded) -> Bounded:

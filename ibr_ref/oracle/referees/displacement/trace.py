@@ -168,7 +168,7 @@ def _comparison(search: Search, step: str, index: int, said: bool | None) -> Tra
     """h < H at one lattice index. said: what the port decided, as its indices tell."""
     one = np.array([0])
     gap, may, must = compared(search, one, np.array([index]))
-    u, v, h = search.rays.at(np.array([index]), search.lattice)
+    u, v, h = search.rays.at(one, np.array([index]), search.lattice)
     inside, _ = domain(search, u, v)
     answer = "" if said is None else ("yes" if said else "no")
     place = f"(u, v) = {_vector([u.value[0], v.value[0]])}"

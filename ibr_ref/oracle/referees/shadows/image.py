@@ -2,54 +2,66 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded
-from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.shadows import resolve
 from ibr_ref.oracle.referees.shadows.branches import Branches, branches, spread
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement
-from ibr_ref.oracle.referees.shadows.project import coordinate, shadow
+from ibr_ref.oracle.referees.shadows.project import shadow
 from ibr_ref.oracle.referees.shadows.surface import Seen
 
-
-def judge(case: Any, device: Device, given: Handed) -> Judgement:
-    """Colour, and depth where it is handed in."""
-    made = Inputs(case, device)
-    seen = made.seen
-    shadows = [
-        shadow(case, made.map(i), coordinate(lens, seen.world), seen.caster) for i, lens in enumerate(made.lenses)
-    ]
-    found = branches(case, seen, shadows)
-    color = resolve.colors(case.scene, seen, found.fragment, found.turned, found.shadow)
-    return _judged(case, seen, found, color, given)
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
 
 
-def _judged(case: Any, seen: Seen, found: Branches, color: list[Bounded], given: Handed) -> Judgement:
-    """Each array by itself, and one outcome for both."""
-    pixel, scene = seen.pixel[found.fragment], case.scene
-    shown, depth = (None if name not in given else np.asarray(given[name]) for name in ("color", "depth"))
-    legal, nothing = {}, {}
-    if shown is not None:
-        legal["color"] = resolve.allows(color, shown.reshape(-1, 3)[pixel])
-        nothing["color"] = resolve.allows_nothing(scene, seen, shown, None)
-    if depth is not None:
-        legal["depth"] = seen.depth[found.fragment].allows(depth.reshape(-1)[pixel])
-        nothing["depth"] = resolve.allows_nothing(scene, seen, None, depth)
-    crowded = np.zeros(len(seen.empty), np.bool_)
-    crowded[seen.pixel[found.crowded]] = True
-    every = np.logical_and.reduce(list(legal.values())), np.logical_and.reduce(list(nothing.values()))
-    undecided, width = spread(case, seen, found, color)
-    return judgement(
-        "image",
-        "pixel",
-        list(legal),
-        [(seen.any_of(pixel, legal[name], nothing[name]) | crowded).reshape(seen.shape) for name in legal],
-        width.reshape(seen.shape),
-        undecided=(undecided | crowded | seen.wild).reshape(seen.shape),
-        together=(seen.any_of(pixel, *every) | crowded).reshape(seen.shape),
-    )
+@dataclass(frozen=True, eq=False)
+class Accepted:
+    """Everything that a picture may show."""
+
+    case: Any
+    seen: Seen
+    outcomes: Branches
+    color: list[Bounded]
+    undecided: Bools
+    """(H W,)."""
+    width: Floats
+
+    @classmethod
+    def of(cls, alone: Inputs) -> Accepted:
+        """alone: a case with nothing handed in."""
+        case, seen = alone.case, alone.seen
+        places = enumerate(alone.coordinates)
+        outcomes = branches(case, seen, [shadow(case, alone.map(i), at, seen.caster) for i, at in places])
+        color = resolve.colors(case.scene, seen, outcomes.fragment, outcomes.turned, outcomes.shadow)
+        return cls(case, seen, outcomes, color, *spread(case, seen, outcomes, color))
+
+    def judge(self, given: Handed) -> Judgement:
+        """Colour and depth: each by itself, and one outcome for both."""
+        seen, scene, pixel = self.seen, self.case.scene, self.seen.pixel[self.outcomes.fragment]
+        shown, depth = (None if name not in given else np.asarray(given[name]) for name in ("color", "depth"))
+        legal, nothing = {}, {}
+        if shown is not None:
+            legal["color"] = resolve.allows(self.color, shown.reshape(-1, 3)[pixel])
+            nothing["color"] = resolve.allows_nothing(scene, seen, shown, None)
+        if depth is not None:
+            legal["depth"] = seen.depth[self.outcomes.fragment].allows(depth.reshape(-1)[pixel])
+            nothing["depth"] = resolve.allows_nothing(scene, seen, None, depth)
+        crowded = np.zeros(len(seen.empty), np.bool_)
+        crowded[seen.pixel[self.outcomes.crowded]] = True
+        every = np.logical_and.reduce(list(legal.values())), np.logical_and.reduce(list(nothing.values()))
+        return judgement(
+            "image",
+            "pixel",
+            list(legal),
+            [(seen.any_of(pixel, legal[name], nothing[name]) | crowded).reshape(seen.shape) for name in legal],
+            self.width.reshape(seen.shape),
+            undecided=(self.undecided | crowded | seen.wild).reshape(seen.shape),
+            together=(seen.any_of(pixel, *every) | crowded).reshape(seen.shape),
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -15,6 +16,7 @@ from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.referees.shadows import places
 from ibr_ref.oracle.referees.shadows.maps import Map, rendered
 from ibr_ref.oracle.referees.shadows.places import Place
+from ibr_ref.oracle.referees.shadows.project import Coordinate, coordinate
 from ibr_ref.oracle.referees.shadows.surface import Seen, see
 from ibr_ref.oracle.referees.shadows.transform import Lens
 from ibr_ref.oracle.referees.shadows.warp import Source, between, pair, place_of, warped
@@ -29,6 +31,8 @@ class Inputs:
     case: Any
     device: Device
     handed: Handed = field(default_factory=dict)
+    alone: Inputs | None = None
+    """The same with nothing handed in: what does not depend on that is made there, once for all submissions."""
 
     @property
     def direct(self) -> bool:
@@ -54,7 +58,14 @@ class Inputs:
     @cached_property
     def seen(self) -> Seen:
         """What the camera may see; no stage array holds it."""
-        return see(self.case, self.device)
+        return see(self.case, self.device) if self.alone is None else self.alone.seen
+
+    @cached_property
+    def coordinates(self) -> list[Coordinate]:
+        """Of what the camera may see, on the map of each sample."""
+        if self.alone is not None:
+            return self.alone.coordinates
+        return [coordinate(lens, self.seen.world) for lens in self.lenses]
 
     def own(self, name: str, *, sampled: bool = True) -> Floats | None:
         """A port's array in float64, with an axis of samples first; None if it was not handed in."""
@@ -68,6 +79,17 @@ class Inputs:
         array = np.asarray(self.case.frame.stages[name]).astype(np.float64)
         return array[None] if sampled and self.count == 1 else array
 
+    def fed(self, name: str, *, sampled: bool = True) -> Floats | None:
+        """A port's array as an input: None too where some of it is no number, for then its own stage is wrong."""
+        array = self.own(name, sampled=sampled)
+        return array if array is not None and np.isfinite(array).all() else None
+
+    def spoiled(self, sample: int, names: Sequence[str]) -> bool:
+        """Whether one of these arrays was handed in for a sample, and is of no use."""
+        arrays = [self.own(name, sampled=name.startswith("warp.")) for name in names]
+        parts = [a[sample] if n.startswith("warp.") else a for n, a in zip(names, arrays, strict=True) if a is not None]
+        return not all(np.isfinite(part).all() for part in parts)
+
     @cached_property
     def positions(self) -> Floats:
         """(3, 3, 2) as the case gives them."""
@@ -76,7 +98,7 @@ class Inputs:
     @cached_property
     def controls(self) -> Bounded:
         """(3, 3, R, C, 2): the port's own, or as they are given."""
-        own = self.own("controls", sampled=False)
+        own = self.fed("controls", sampled=False)
         if own is not None:
             return exact(own, self.device)
         return uploaded(self.reference("controls", sampled=False), self.device)
@@ -93,7 +115,7 @@ class Inputs:
 
     def places(self, sample: int) -> list[tuple[Place, Place]]:
         """The cells and fractions along x and y that a sample may find, the likeliest first."""
-        own_cell, own_fraction = self.own("warp.cell"), self.own("warp.fraction")
+        own_cell, own_fraction = self.own("warp.cell"), self.fed("warp.fraction")
         if own_cell is not None and not np.isin(own_cell[sample], (0.0, 1.0)).all():
             own_cell = None
         return place_of(
@@ -105,7 +127,7 @@ class Inputs:
 
     def row_grids(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """Two (R, C, 2)."""
-        own = self.own("warp.row_grids")
+        own = self.fed("warp.row_grids")
         if own is not None:
             return [exact(grid, self.device) for grid in own[sample]]
         return self.made_row_grids(place)
@@ -120,7 +142,7 @@ class Inputs:
 
     def grid(self, sample: int, place: tuple[Place, Place]) -> Bounded:
         """(R, C, 2)."""
-        own = self.own("warp.grid")
+        own = self.fed("warp.grid")
         if own is not None:
             return exact(own[sample], self.device)
         return self.made_grid(sample, place)
@@ -132,21 +154,22 @@ class Inputs:
 
     def rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """Two (S, S)."""
-        own = self.own("warp.rows")
+        own = self.fed("warp.rows")
         if own is not None:
             return [exact(row, self.device) for row in own[sample]]
         return self.made_rows(sample, place)
 
     def made_rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """From the nine maps."""
+        targets = self.row_grids(sample, place)
+        return [
+            pair(self.sources(place, k), place[0].fraction, target, self.nearest) for k, target in enumerate(targets)
+        ]
+
+    def sources(self, place: tuple[Place, Place], row: int) -> list[Source]:
+        """The two maps of a row."""
         x, y = place
-        result = []
-        for k, target in enumerate(self.row_grids(sample, place)):
-            sources = [
-                Source(self.images[y.cell + k, x.cell + n], self.controls[y.cell + k, x.cell + n]) for n in range(2)
-            ]
-            result.append(pair(sources[0], sources[1], x.fraction, target, self.nearest))
-        return result
+        return [Source(self.images[y.cell + row, x.cell + n], self.controls[y.cell + row, x.cell + n]) for n in (0, 1)]
 
     @property
     def nearest(self) -> bool:
@@ -157,13 +180,14 @@ class Inputs:
         """(S, S) from the rows."""
         grids, rows = self.row_grids(sample, place), self.rows(sample, place)
         sources = [Source(row, grid) for row, grid in zip(rows, grids, strict=True)]
-        return pair(sources[0], sources[1], place[1].fraction, self.grid(sample, place), self.nearest)
+        return pair(sources, place[1].fraction, self.grid(sample, place), self.nearest)
 
     def map(self, sample: int) -> Map:
         """What is projected for a sample."""
         own = self.own("warp.image")
         if own is not None:
-            return Map.of(exact(own[sample], self.device))
+            bad = ~np.isfinite(own[sample])
+            return Map.of(exact(np.where(bad, self.reference("warp.image")[sample], own[sample]), self.device), bad)
         if self.direct:
             at = places.offset(self.case, self.device)
             return rendered(self.case, self.lenses[sample], at, self.reference("warp.image")[sample])

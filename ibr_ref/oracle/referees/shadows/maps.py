@@ -36,11 +36,13 @@ class Map:
     low: Floats
     """(S, S) the least of all legal texels."""
     high: Floats
+    spoiled: Bools
+    """(S, S) the port's texel is no number: `firm` has the reference's."""
 
     @classmethod
-    def of(cls, firm: Bounded) -> Map:
+    def of(cls, firm: Bounded, spoiled: Bools | None = None) -> Map:
         """A map without open decisions."""
-        return cls(firm, firm.low, firm.high)
+        return cls(firm, firm.low, firm.high, np.zeros(firm.value.shape, np.bool_) if spoiled is None else spoiled)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +98,8 @@ def rendered(case: Any, lens: Lens, offset: Sequence[Bounded], reference: Floats
     if case.params.content == "mask":
         k = int(case.params.map_samples)
         low, high = (counts(each, k) for each in drawn(case, lens, offset, k * size).covered)
-        return Map(Bounded(reference, np.zeros_like(reference), device), low, high)
+        none = np.zeros(reference.shape, np.bool_)
+        return Map(Bounded(reference, np.zeros_like(reference), device), low, high, none)
     found = drawn(case, lens, offset, size)
     return _depths(found, reference, device)
 
@@ -115,7 +118,8 @@ def _depths(found: Drawn, reference: Floats, device: Device) -> Map:
     error[flat == 1.0] = 0.0
     firm = Bounded(reference, error.reshape(reference.shape), device)
     low, high = (a.reshape(reference.shape) for a in (low, high))
-    return Map(firm, np.minimum(low, firm.low), np.maximum(high, firm.high))
+    none = np.zeros(reference.shape, np.bool_)
+    return Map(firm, np.minimum(low, firm.low), np.maximum(high, firm.high), none)
 
 
 def _hull(found: Drawn, texels: int) -> tuple[Floats, Floats]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
 from ibr_ref.oracle.accept.fetch import FILTER_ROUNDINGS, Texture, fetch, texels_near
 from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.referees.shadows.footprint import reads
 from ibr_ref.oracle.referees.shadows.maps import Map
 from ibr_ref.oracle.referees.shadows.transform import Lens, centered
 
@@ -28,6 +29,8 @@ class Coordinate:
     t: Bounded
     r: Bounded
     w: Bounded
+    spoiled: Bools
+    """(n,) the port's own is no number."""
 
     @property
     def axes(self) -> tuple[Bounded, Bounded, Bounded]:
@@ -45,10 +48,12 @@ class Shadow:
     """With one of them the other way; a range that holds all such results where there are many."""
     open: Bools
     """Whether that is legal."""
+    spoiled: Bools
+    """What it is made of is no number: anything is legal, the fault lies before."""
 
     def allows(self, found: Floats) -> Bools:
         """Whether a port's number is legal."""
-        return np.asarray(self.first.allows(found) | (self.open & self.other.allows(found)))
+        return np.asarray(self.first.allows(found) | (self.open & self.other.allows(found)) | self.spoiled)
 
 
 def coordinate(lens: Lens, world: Sequence[Bounded]) -> Coordinate:
@@ -56,13 +61,14 @@ def coordinate(lens: Lens, world: Sequence[Bounded]) -> Coordinate:
     x, y, z, w = lens.clip_of(world)
     half = exact(0.5, w.device)
     s, t, r = ((half * x + half * w) / w, (half * w - half * y) / w, (z / w).between(0.0, 1.0))
-    return Coordinate(s, t, r, w)
+    return Coordinate(s, t, r, w, np.zeros(len(w.value), np.bool_))
 
 
 def handed(found: Floats, w: Bounded) -> Coordinate:
     """The port's own coordinates (n, 3)."""
-    s, t, r = (exact(found[:, k], w.device) for k in range(3))
-    return Coordinate(s, t, r, w)
+    usable = np.isfinite(found)
+    s, t, r = (exact(np.where(usable[:, k], found[:, k], 0.0), w.device) for k in range(3))
+    return Coordinate(s, t, r, w, np.asarray(~usable.all(axis=1)))
 
 
 def shadow(case: Any, texels: Map, at: Coordinate, caster: Bools) -> Shadow:
@@ -79,7 +85,8 @@ def shadow(case: Any, texels: Map, at: Coordinate, caster: Bools) -> Shadow:
     border = possible & ~certain
     alternative = _either(read, other, open_).where(~inside, other.where(open_, none))
     both = _either(alternative, none, inside)
-    return Shadow(first, both.where(border, other), (border | open_) & possible)
+    spoiled = at.spoiled | (reads(texels.spoiled, at.s, at.t) if texels.spoiled.any() else False)
+    return Shadow(first, both.where(border, other), (border | open_) & possible, spoiled)
 
 
 def _either(a: Bounded, b: Bounded, also: Bools) -> Bounded:
@@ -112,11 +119,10 @@ def _masks(texels: Map, at: Coordinate) -> tuple[Bounded, Bounded, Bools]:
     open_texels = (texels.low < texels.firm.low) | (texels.high > texels.firm.high)
     if not open_texels.any():
         return first, first, np.zeros(len(first.value), np.bool_)
-    near = _near(texels.firm.value.shape[0], at, open_texels)
+    near = reads(open_texels, at.s, at.t)
     low, high = first.low.copy(), first.high.copy()
-    some = Coordinate(*(axis[near] for axis in (*at.axes, at.w)))
-    low[near] = fetch(Texture(texels.low), some.s, some.t).low
-    high[near] = fetch(Texture(texels.high), some.s, some.t).high
+    low[near] = fetch(Texture(texels.low), at.s[near], at.t[near]).low
+    high[near] = fetch(Texture(texels.high), at.s[near], at.t[near]).high
     return first, centered(low, high, device), near
 
 
@@ -126,25 +132,6 @@ def _fetched(image: Bounded, at: Coordinate) -> Bounded:
         return value
     error = np.broadcast_to(image.error, image.value.shape)
     return value.widened(fetch(Texture(error), at.s, at.t).high)
-
-
-def _near(size: int, at: Coordinate, marked: Bools) -> Bools:
-    """(n,) whether a marked texel is among those that a fetch may read."""
-    (first_row, last_row), (first, last) = (_footprint(size, axis) for axis in (at.t, at.s))
-    sums = np.zeros((size + 1, size + 1), np.int64)
-    sums[1:, 1:] = np.cumsum(np.cumsum(marked, axis=0), axis=1)
-    last_row, last = last_row + 1, last + 1
-    count = sums[last_row, last] - sums[first_row, last] - sums[last_row, first] + sums[first_row, first]
-    return np.asarray(count > 0)
-
-
-def _footprint(size: int, axis: Bounded) -> tuple[Ints, Ints]:
-    """First and last texel, clamped, that a bilinear fetch may read: those whose centres are less than one away."""
-    reach = axis.error * size + axis.device.weight_step
-    x = axis.value * size - 0.5
-    low, high = np.floor(np.clip(x - reach, -1.0, size)), np.floor(np.clip(x + reach, -1.0, size)) + 1.0
-    first, last = (np.clip(np.nan_to_num(e), 0, size - 1).astype(np.int64) for e in (low, high))
-    return first, last
 
 
 # --- Depths ----------------------------------------------------------------------------------------------------------
@@ -233,8 +220,8 @@ def _four(texels: Map, sides: _Sides, at: Coordinate) -> tuple[Bounded, Bounded,
         wide |= axis.error * size + device.weight_step >= 0.5  # more than one border may cut the box
     other[0, wide], other[1, wide], open_[wide] = 0.0, 1.0, True
     rounding = FILTER_ROUNDINGS * device.operation * UNIT
-    mixed = [centered(e[0], e[1], device).widened(rounding) for e in (first, other)]
-    return mixed[0], mixed[1], open_
+    mixed = Bounded(value, np.maximum(first[1] - value, value - first[0]), device)
+    return mixed.widened(rounding), centered(other[0], other[1], device).widened(rounding), open_
 
 
 def _place(size: int, axis: Bounded) -> Floats:

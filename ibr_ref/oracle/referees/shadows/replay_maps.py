@@ -42,7 +42,8 @@ def images(given: Inputs) -> Judgement | None:
     x, y = places.positions(given.case, given.device)
     results = []
     for j, i in np.ndindex(3, 3):
-        at = [x[i], y[j]] if own is None else [exact(own[j, i, k], given.device) for k in range(2)]
+        usable = own is not None and np.isfinite(own[j, i]).all()
+        at = [exact(own[j, i, k], given.device) for k in range(2)] if own is not None and usable else [x[i], y[j]]
         results.append(maps.allows(given.case, given.lenses[0], at, found[j, i]))
     right, undecided, width = (np.stack(part).reshape(found.shape) for part in zip(*results, strict=True))
     replayed = [] if own is None else ["maps.positions"]
@@ -129,7 +130,7 @@ def _points(given: Inputs, name: str, make: Callable[[int, Spot], Bounded], feed
     found = given.own(name)
     if found is None or given.direct:
         return None
-    right, width = _compared(given, found, make)
+    right, width = _compared(given, found, make, feeds)
     return _judged(given, "control point", name, np.asarray(right.all(axis=-1)), width.max(axis=-1), feeds)
 
 
@@ -137,17 +138,19 @@ def _texels(given: Inputs, name: str, make: Callable[[int, Spot], Bounded], feed
     found = given.own(name)
     if found is None or given.direct:
         return None
-    return _judged(given, "texel", name, *_compared(given, found, make), feeds)
+    return _judged(given, "texel", name, *_compared(given, found, make, feeds), feeds)
 
 
-def _compared(given: Inputs, found: Floats, make: Callable[[int, Spot], Bounded]) -> tuple[Bools, Floats]:
-    """For each sample at the place that agrees with most of what the port has."""
+def _compared(
+    given: Inputs, found: Floats, make: Callable[[int, Spot], Bounded], feeds: Sequence[str]
+) -> tuple[Bools, Floats]:
+    """For each sample at the place that agrees with most of what the port has; all right where its inputs are no numbers."""
     right, width = [], []
     for sample in range(given.count):
         options = [make(sample, place) for place in given.places(sample)]
         agree = [option.allows(found[sample]) for option in options]
         best = max(range(len(options)), key=lambda i: int(agree[i].sum()))
-        right.append(agree[best])
+        right.append(agree[best] | given.spoiled(sample, feeds))
         width.append(np.broadcast_to(2.0 * options[best].error, agree[best].shape))
     return np.stack(right), np.stack(width)
 

@@ -17,7 +17,7 @@ from ibr_ref.oracle.referees.shadows.branches import Branches, branches, in_shad
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement
 from ibr_ref.oracle.referees.shadows.maps import VISIBLE
-from ibr_ref.oracle.referees.shadows.project import Shadow, coordinate, handed, shadow
+from ibr_ref.oracle.referees.shadows.project import Shadow, handed, shadow
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -62,8 +62,7 @@ def projected(given: Inputs) -> Judgement | None:
     fragments, nothing = _agreeing(given)
     legal = {name: fragments.copy() for name in names}
     undecided, width = seen.wild.copy(), np.zeros(len(seen.empty))
-    for i, lens in enumerate(given.lenses):
-        at = coordinate(lens, seen.world)
+    for i, at in enumerate(given.coordinates):
         if coords is not None:
             own = coords[i].reshape(-1, 3)
             nothing &= (own == 0.0).all(axis=1)
@@ -104,9 +103,10 @@ def sums(given: Inputs) -> Judgement | None:
     found = np.asarray(given.handed["accumulate.shadow"]).astype(np.float64)
     own, name = given.own("project.shadow"), "accumulate.shadow"
     if own is not None:
-        shadows = [exact(s, given.device) for s in own]
+        shadows = [exact(_numbers(s), given.device) for s in own]
         bound = accumulated(shadows, given.case.params.accumulation == "unorm8")
-        right, width = bound.allows(found), np.broadcast_to(2.0 * bound.error, found.shape)
+        right = bound.allows(found) | ~np.isfinite(own.sum(axis=0))  # what is no number is wrong before
+        width = np.broadcast_to(2.0 * bound.error, found.shape)
         return judgement("accumulate", "pixel", [name], [right], width, replayed=["project.shadow"])
     seen, outcomes = given.seen, _outcomes(given)
     pixel = seen.pixel[outcomes.fragment]
@@ -122,15 +122,19 @@ def sums(given: Inputs) -> Judgement | None:
     )
 
 
+def _numbers(array: Floats) -> Floats:
+    """A port's array with 0 for what is no number: such elements are skipped."""
+    return np.where(np.isfinite(array), array, 0.0)
+
+
 def _outcomes(given: Inputs) -> Branches:
     """What the sum may be, from the port's own shadows or coordinates if it has handed them in."""
     seen, own = given.seen, given.own("project.shadow")
     if own is not None:
-        shadows = [exact(s.reshape(-1)[seen.pixel], given.device) for s in own]
+        shadows = [exact(_numbers(s).reshape(-1)[seen.pixel], given.device) for s in own]
         return in_shadow(seen, accumulated(shadows, given.case.params.accumulation == "unorm8"))
     coords, outcomes = given.own("project.coord"), []
-    for i, lens in enumerate(given.lenses):
-        at = coordinate(lens, seen.world)
+    for i, at in enumerate(given.coordinates):
         if coords is not None:
             at = handed(coords[i].reshape(-1, 3)[seen.pixel], at.w)
         outcomes.append(shadow(given.case, given.map(i), at, seen.caster))
@@ -143,7 +147,7 @@ def colors(given: Inputs) -> Judgement | None:
         return None
     seen, scene, own = given.seen, given.case.scene, given.own("accumulate.shadow", sampled=False)
     if own is not None:
-        outcomes = in_shadow(seen, exact(own.reshape(-1)[seen.pixel], given.device))
+        outcomes = in_shadow(seen, exact(_numbers(own).reshape(-1)[seen.pixel], given.device))
     else:
         outcomes = _outcomes(given)
     color = resolve.colors(scene, seen, outcomes.fragment, outcomes.turned, outcomes.shadow)
@@ -152,6 +156,8 @@ def colors(given: Inputs) -> Judgement | None:
     legal = resolve.allows(color, shown.reshape(-1, 3)[pixel]) & fragments[outcomes.fragment]
     right = seen.any_of(pixel, legal, nothing & resolve.allows_nothing(scene, seen, shown, None))
     right[seen.pixel[outcomes.crowded]] = True
+    if own is not None:
+        right |= ~np.isfinite(own.reshape(-1))
     undecided, width = spread(given.case, seen, outcomes, color)
     return judgement(
         "resolve",

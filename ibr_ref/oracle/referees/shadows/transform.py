@@ -42,10 +42,7 @@ class Lens:
         absolute = np.abs(view)
         if eye is not None:
             absolute[:3, 3] = absolute[:3, :3] @ np.abs(np.asarray(eye, np.float64)[:3])
-        sizes = np.abs(clip) @ absolute
-        # In clip space with z in [-1, 1] the row is 2 z - w, and what comes of it is halved.
-        sizes[2] += 0.5 * sizes[3]
-        return cls(view, clip, sizes)
+        return cls(view, clip, np.abs(clip) @ absolute)
 
     def clip_of(self, point: Sequence[Bounded]) -> list[Bounded]:
         """Clip coordinates x, y, z, w of points, the matrices applied one after the other or multiplied before.
@@ -55,9 +52,12 @@ class Lens:
         device = point[0].device
         x, y, z = (p.value for p in point)
         view = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in self.view[:3]]
+        sizes_of_rows = self.sizes.copy()
+        if device.minus_one:  # the row is 2 z - w, and what comes of it is halved
+            sizes_of_rows[2] += 0.5 * self.sizes[3]
         product, rounding = np.abs(self.clip @ self.view), gamma(device, MATRIX_ROUNDINGS)
         result = []
-        for row, moves, sizes in zip(self.clip, product, self.sizes, strict=True):
+        for row, moves, sizes in zip(self.clip, product, sizes_of_rows, strict=True):
             value = row[0] * view[0] + row[1] * view[1] + row[2] * view[2] + row[3]
             error = rounding * sizes[3]
             for k, p in enumerate(point):
@@ -82,8 +82,9 @@ def window(clip: Sequence[Bounded], width: int, height: int) -> list[Bounded]:
     one = exact(1.0, device)
     x = (clip[0] / clip[3] + one) * exact(width / 2.0, device)
     y = (one - clip[1] / clip[3]) * exact(height / 2.0, device)
-    # With z in [-1, 1]: a quotient, a half and a sum, of numbers up to 1.
-    return [x, y, (clip[2] / clip[3]).widened(gamma(device, 2.0, 1.0))]
+    z = clip[2] / clip[3]
+    # From [-1, 1]: a quotient, a half and a sum, of numbers up to 1.
+    return [x, y, z.widened(gamma(device, 2.0, 1.0)) if device.minus_one else z]
 
 
 def centered(low: Floats, high: Floats, device: Device) -> Bounded:

@@ -57,24 +57,23 @@ def warped(alternatives: Sequence[Bounded]) -> Bounded:
     return Bounded(first.value, error, first.device)
 
 
-def pair(first: Source, second: Source, share: Bounded, target: Bounded, nearest: bool) -> Bounded:
-    """Both warped to the grid `target` and mixed, or the nearer one alone: (S, S).
+def pair(sources: Sequence[Source], share: Bounded, target: Bounded, nearest: bool) -> Bounded:
+    """Two images, both warped to the grid `target` and mixed, or the nearer one alone: (S, S).
 
     The mesh covers the whole map: its border is the map's, so that there is no pixel outside, whatever is snapped.
     """
-    size = len(first.image.value)
-    mesh = _Mesh.of(target, size)
+    size = len(sources[0].image.value)
+    mesh = mesh_of(target, size)
     if not nearest:
-        images = [mesh.warped(source) for source in (first, second)]
+        images = [mesh.warped(source) for source in sources]
         return lerp(images[0], images[1], share)
-    chosen = [first if share.value < 0.5 else second]
-    if abs(float(share.value) - 0.5) <= float(share.error):
-        chosen.append(second if share.value < 0.5 else first)
-    return warped([mesh.warped(source) for source in chosen])
+    nearer = int(share.value >= 0.5)
+    open_ = abs(float(share.value) - 0.5) <= float(share.error)
+    return warped([mesh.warped(sources[n]) for n in ((nearer, 1 - nearer) if open_ else (nearer,))])
 
 
 @dataclass(frozen=True, eq=False)
-class _Mesh:
+class Mesh:
     """A grid's triangles in the window of a map, and all pixels that each may cover."""
 
     found: Fragments
@@ -83,23 +82,14 @@ class _Mesh:
     last: NDArray[np.int64]
     """(S S) the fragment that the reference shows."""
 
-    @classmethod
-    def of(cls, target: Bounded, size: int) -> _Mesh:
-        """Corners go from [0, 1] to [-1, 1] and from there to the window."""
-        device = target.device
-        one, two, half = exact(1.0, device), exact(2.0, device), exact(size / 2.0, device)
-        corners = grid_corners(target)
-        window = (corners * two - one + one) * half
-        # The reference snaps S G' itself.
-        placed = Bounded(corners.value * size, window.error, device)
-        x, y = placed[..., 0], placed[..., 1]
-        found = fragments(x, y, size, size)
-        return cls(found, Triangles.of(x, y, size, size), size, _last(found, size))
+    def coordinates(self, grid: Bounded) -> tuple[Bounded, Bounded]:
+        """(n,) u and v of the fragments."""
+        corners = grid_corners(grid)
+        return linear(self.triangles, self.found, corners[..., 0]), linear(self.triangles, self.found, corners[..., 1])
 
     def warped(self, source: Source) -> Bounded:
         """An image with its grid as texture coordinates."""
-        corners = grid_corners(source.grid)
-        u, v = (linear(self.triangles, self.found, corners[..., k]) for k in range(2))
+        u, v = self.coordinates(source.grid)
         device = u.device
         value = fetch(Texture(source.image.value), u, v)
         if np.any(source.image.error > 0.0):
@@ -111,6 +101,19 @@ class _Mesh:
         np.maximum.at(error, pixel, np.abs(value.value - shown[pixel]) + value.error)
         shape = self.size, self.size
         return Bounded(shown.reshape(shape), error.reshape(shape), device)
+
+
+def mesh_of(target: Bounded, size: int) -> Mesh:
+    """The triangles of a grid (R, C, 2). Corners go from [0, 1] to [-1, 1] and from there to the window."""
+    device = target.device
+    one, two, half = exact(1.0, device), exact(2.0, device), exact(size / 2.0, device)
+    corners = grid_corners(target)
+    window = (corners * two - one + one) * half
+    # The reference snaps S G' itself.
+    placed = Bounded(corners.value * size, window.error, device)
+    x, y = placed[..., 0], placed[..., 1]
+    found = fragments(x, y, size, size)
+    return Mesh(found, Triangles.of(x, y, size, size), size, _last(found, size))
 
 
 def _last(found: Fragments, size: int) -> NDArray[np.int64]:

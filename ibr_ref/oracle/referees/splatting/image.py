@@ -13,7 +13,7 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.splatting.lighting import Shades, shades
-from ibr_ref.oracle.referees.splatting.place import Placed, placed, with_handed
+from ibr_ref.oracle.referees.splatting.place import Landed, landed, placed, world_points
 from ibr_ref.oracle.referees.splatting.splats import buffered, contest, single
 from ibr_ref.oracle.referees.splatting.table import Table, table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
@@ -49,7 +49,7 @@ def judge_image(case: Case, device: Device, handed: Handed) -> Judgement:
 def judge_resolve(case: Case, device: Device, handed: Handed) -> Judgement:
     """The picture from the port's own winners and vertices, as far as they were handed in."""
     points = table(case, device)
-    where, fed = with_handed(placed(case, device, points), handed, device)
+    where, fed = landed(case, device, points, handed)
     fed = tuple(name for name in ("raster.splat", "raster.depth", "vertex.color", *fed) if name in handed)
     if "raster.splat" in handed:
         found = named(case, device, points, where, handed)
@@ -60,24 +60,24 @@ def judge_resolve(case: Case, device: Device, handed: Handed) -> Judgement:
     return _judged("resolve", case, handed, found, reference, fed)
 
 
-def seen(case: Case, device: Device, points: Table, where: Placed, handed: Handed) -> Outcomes:
+def seen(case: Case, device: Device, points: Table, where: Landed, handed: Handed) -> Outcomes:
     """Every splat that may win, with both branches of its colour; and the background."""
     camera = case.scene.camera
     result = contest(where, case.params.shape, camera.width, camera.height)
     shown, at = np.unique(result.splat, return_inverse=True)
-    colors = vertex_colors(case, device, points, where, shown, handed)[at.reshape(-1)]
+    colors = vertex_colors(case, device, points, shown, handed)[at.reshape(-1)]
     pixels = np.flatnonzero(result.empty)
     judged = np.full(len(result.empty), result.judged)
     return _outcomes(case, device, result.pixel, colors, result.depth[result.splat], pixels, judged)
 
 
-def named(case: Case, device: Device, points: Table, where: Placed, handed: Handed) -> Outcomes:
+def named(case: Case, device: Device, points: Table, where: Landed, handed: Handed) -> Outcomes:
     """The splat that the port names for each pixel; one that does not exist was wrong before."""
     splat = np.asarray(handed["raster.splat"]).reshape(-1).astype(np.int64)
     exists = (splat >= 0) & (splat < len(points.rows))
     pixel = np.flatnonzero(exists)
     shown, at = np.unique(splat[pixel], return_inverse=True)
-    colors = vertex_colors(case, device, points, where, shown, handed)[at.reshape(-1)]
+    colors = vertex_colors(case, device, points, shown, handed)[at.reshape(-1)]
     judged = exists | (splat == -1)
     judged[pixel[~np.isfinite(colors.color.value).all(axis=1)]] = False
     depth = buffered(where.depth)[splat[pixel]]
@@ -91,12 +91,12 @@ def named(case: Case, device: Device, points: Table, where: Placed, handed: Hand
     return Outcomes(found.pixel, found.color, single(device, stored[found.pixel]), judged & np.isfinite(stored))
 
 
-def vertex_colors(case: Case, device: Device, points: Table, where: Placed, vertices: Ints, handed: Handed) -> Shades:
+def vertex_colors(case: Case, device: Device, points: Table, vertices: Ints, handed: Handed) -> Shades:
     """Colours of some vertices: the port's own, if it handed them in."""
     if "vertex.color" in handed:
         own = exact(np.asarray(handed["vertex.color"], np.float64)[vertices], device)
         return Shades(own, own, np.zeros(len(vertices), np.bool_))
-    world = [coordinate[vertices] for coordinate in where.world]
+    world = [coordinate[vertices] for coordinate in world_points(case, device, points)]
     return shades(case, device, world, points.codes[vertices], points.albedo[vertices])
 
 

@@ -21,21 +21,15 @@ Vector = Sequence[Bounded]
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
-    """All points of a case, (V,) each."""
+class Landed:
+    """All points of a case in the window, (V,) each."""
 
-    world: list[Bounded]
-    """x, y, z."""
     x: Bounded
     """Window, pixels; means nothing where the point is dropped. So do depth and width."""
     y: Bounded
     depth: Bounded
-    distance: Bounded
-    """The law's d."""
     width: Bounded
     """Clamped, pixels."""
-    clip_z: Bounded
-    clip_w: Bounded
     kept: Bools
     """Whether the reference keeps it."""
     doubtful: Bools
@@ -50,6 +44,18 @@ class Placed:
     def possible(self) -> Bools:
         """Kept by some legal device."""
         return self.kept | self.doubtful
+
+
+@dataclass(frozen=True, eq=False)
+class Placed(Landed):
+    """And how they came there."""
+
+    world: list[Bounded]
+    """x, y, z."""
+    distance: Bounded
+    """The law's d."""
+    clip_z: Bounded
+    clip_w: Bounded
 
 
 def placed(case: Case, device: Device, points: Table) -> Placed:
@@ -223,34 +229,30 @@ def correctly_rounded(a: Bounded, b: Bounded) -> Bounded:
     return Bounded(quotient.value, np.where(floats & (a.device.quotient <= 1.0), 0.0, quotient.error), a.device)
 
 
-def with_handed(points: Placed, handed: Handed, device: Device) -> tuple[Placed, tuple[str, ...]]:
-    """The points as the port has them, where it handed them in; and the names of those arrays.
+LANDED = ("vertex.window", "vertex.depth", "vertex.width")
+"""The port's arrays that a splat is made of."""
+
+
+def landed(case: Case, device: Device, points: Table, handed: Handed) -> tuple[Landed, tuple[str, ...]]:
+    """The points as the port has them, where it handed them in, else as they are; and the names of the port's arrays.
 
     A point is kept as the port's width says, or its window position; where these are NaN, it is not drawn.
     """
-    fed = tuple(name for name in ("vertex.window", "vertex.depth", "vertex.width") if name in handed)
-    if not fed:
-        return points, fed
-    given = {name: exact(np.asarray(handed[name], np.float64), device) for name in fed}
-    kept, doubtful = points.kept, points.doubtful
-    for name in ("vertex.depth", "vertex.window", "vertex.width"):
-        if name in given:
-            value = given[name].value
-            finite = np.isfinite(value.reshape(len(value), -1)).all(axis=1)
-            kept = np.asarray(value > 0.0 if name == "vertex.width" else finite, np.bool_)
-            doubtful = np.zeros_like(kept)
-    for bound in given.values():
-        kept = kept & np.isfinite(bound.value.reshape(len(kept), -1)).all(axis=1)
-    window = given.get("vertex.window")
-    return Placed(
-        world=points.world,
-        x=points.x if window is None else window[:, 0],
-        y=points.y if window is None else window[:, 1],
-        depth=given.get("vertex.depth", points.depth),
-        distance=points.distance,
-        width=given.get("vertex.width", points.width),
-        clip_z=points.clip_z,
-        clip_w=points.clip_w,
-        kept=kept,
-        doubtful=doubtful,
-    ), fed
+    fed = tuple(name for name in LANDED if name in handed)
+    fields: dict[str, Bounded] = {}
+    if len(fed) < len(LANDED):
+        own = placed(case, device, points)
+        if not fed:
+            return own, fed
+        fields = {"x": own.x, "y": own.y, "depth": own.depth, "width": own.width}
+    kept = np.ones(len(points.rows), np.bool_)
+    for name in fed:
+        given = exact(np.asarray(handed[name], np.float64), device)
+        kept &= np.isfinite(given.value.reshape(len(kept), -1)).all(axis=1)
+        if name == "vertex.window":
+            fields["x"], fields["y"] = given[:, 0], given[:, 1]
+        else:
+            fields[name.removeprefix("vertex.")] = given
+        if name == "vertex.width":
+            kept &= given.value > 0.0
+    return Landed(**fields, kept=kept, doubtful=np.zeros_like(kept)), fed

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.referees.splatting.place import placed, with_handed
+from ibr_ref.oracle.referees.splatting.place import landed
 from ibr_ref.oracle.referees.splatting.splats import Contest, contest
 from ibr_ref.oracle.referees.splatting.table import Table, table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
@@ -26,7 +26,7 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     """Every pixel: a splat that may win it, with its own depth, and as many splats as may cover it."""
     camera = case.scene.camera
     splats = table(case, device)
-    points, fed = with_handed(placed(case, device, splats), handed, device)
+    points, fed = landed(case, device, splats, handed)
     result = contest(points, case.params.shape, camera.width, camera.height, twins(case, splats, handed))
     pixels = camera.width * camera.height
     given = {name: np.asarray(handed[name]).reshape(pixels) for name in ARRAYS if name in handed}

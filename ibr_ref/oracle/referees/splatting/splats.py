@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.winners import winners
 from ibr_ref.oracle.device import UNIT, Device
-from ibr_ref.oracle.referees.splatting.place import Placed
+from ibr_ref.oracle.referees.splatting.place import Landed
 from ibr_ref.oracle.referees.splatting.spans import Axis, axis
 
 Floats = NDArray[np.float64]
@@ -62,7 +62,7 @@ def buffered(depth: Bounded) -> Bounded:
     return depth.widened(units * UNIT * scale + device.depth_step)
 
 
-def contest(points: Placed, shape: str, width: int, height: int, twins: Ints | None = None) -> Contest:
+def contest(points: Landed, shape: str, width: int, height: int, twins: Ints | None = None) -> Contest:
     """All splats against each other in a picture. twins: (V,) the earliest point that is drawn exactly as this one is."""
     depth = buffered(points.depth)
     drawn = np.flatnonzero(points.possible & (points.width.high > 0.0))

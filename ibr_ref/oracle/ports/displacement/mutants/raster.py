@@ -121,7 +121,7 @@ class _Strip(Port):
         return ((0, 1, 2), (1, 2, 3))
 
 
-@RASTER.add("near plane of z in [-w, w]", small=True)
+@RASTER.add("near plane of z in [-w, w]", small=True, hidden="hits before the near plane are discarded all the same")
 class _LooseNear(Port):
     """Clipped at z = -w: what lies in front of the near plane is drawn."""
 

@@ -9,7 +9,7 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, TraceRow
 from ibr_ref.oracle.referees.splatting.image import as_bytes
-from ibr_ref.oracle.referees.splatting.place import Placed, placed, with_handed
+from ibr_ref.oracle.referees.splatting.place import Landed, landed, placed
 from ibr_ref.oracle.referees.splatting.spans import axis, border
 from ibr_ref.oracle.referees.splatting.splats import Contest, buffered, contest
 from ibr_ref.oracle.referees.splatting.table import table
@@ -24,7 +24,7 @@ def pixel(case: Case, device: Device, fed: Handed, handed: Handed, at: tuple[int
     """The contest for a pixel (row, column). fed: the arrays that it is replayed from; handed: those it is compared with."""
     camera = case.scene.camera
     points = table(case, device)
-    where, _ = with_handed(placed(case, device, points), fed, device)
+    where, _ = landed(case, device, points, fed)
     result = contest(where, case.params.shape, camera.width, camera.height)
     splats = result.splat[result.pixel == at[0] * camera.width + at[1]]
     splats = splats[np.argsort(where.depth.value[splats], kind="stable")]
@@ -51,7 +51,7 @@ def pixel(case: Case, device: Device, fed: Handed, handed: Handed, at: tuple[int
     return rows
 
 
-def _splat(where: Placed, splat: int, at: tuple[int, int], device: Device) -> list[TraceRow]:
+def _splat(where: Landed, splat: int, at: tuple[int, int], device: Device) -> list[TraceRow]:
     """Its borders, as distances from the pixel's centre: positive inside."""
     name = f"splat {splat}"
     if not where.possible[splat] or not np.isfinite(where.width.value[splat]):

@@ -1,0 +1,84 @@
+"""Traces of the maps and their control points."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ibr_ref.oracle.accept.bounded import exact, uploaded
+from ibr_ref.oracle.judgement import TraceRow
+from ibr_ref.oracle.referees.shadows import maps, places
+from ibr_ref.oracle.referees.shadows.inputs import Inputs
+from ibr_ref.oracle.referees.shadows.trace.rows import number, told
+
+MOST = 12
+"""Triangles that are listed."""
+
+
+def position(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
+    """Map (j, i): where the object stands along each axis."""
+    j, i = index
+    own = given.own("maps.positions", sampled=False)
+    rows = []
+    for k, (axis, at) in enumerate(zip(places.positions(given.case, given.device), (i, j), strict=True)):
+        name, widest = "xy"[k], max(abs(float(s.displacement[k].value)) for s in given.samples)
+        rows.append(told(f"{name}: range", np.asarray(given.case.scene.offset_range)[k].tolist()))
+        rows.append(told(f"{name}: widened by the light's samples", f"{widest:.9g}"))
+        rows += [number(f"{name}: line {n}", line) for n, line in enumerate(axis)]
+        rows.append(number(f"{name}: of this map, line {at}", axis[at], None if own is None else own[j, i, k]))
+    return rows
+
+
+def control(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
+    """Point (j, i, r, c)."""
+    own = given.own("controls", sampled=False)
+    value = given.reference("controls", sampled=False)[index]
+    points = [uploaded(v, given.device) for v in value]
+    found = None if own is None else own[index]
+    j, i, r, c = index
+    return [
+        told("map j, i", f"{j}, {i}"),
+        told("row, column of the grid", f"{r}, {c}"),
+        told("as the case gives it", f"{value[0]:.17g}, {value[1]:.17g}"),
+        number("control point u, v", points, found),
+    ]
+
+
+def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRow]:
+    """A texel of a map that is rendered: the triangles that may cover its samples."""
+    case, device, k = given.case, given.device, int(given.case.params.map_samples)
+    depth = case.params.content == "depth"
+    (row, column), at, lens = index[-2:], places.offset(case, device), given.lenses[0]
+    if array == "maps.image":
+        own = given.own("maps.positions", sampled=False)
+        line = [p[n] for p, n in zip(places.positions(case, device), index[1::-1], strict=True)]
+        at = line if own is None else [exact(n, device) for n in own[index[:2]]]
+    elif given.count > 1:
+        lens = given.lenses[index[0]]
+    size = int(case.params.map_size) * (1 if depth else k)
+    found = maps.drawn(case, lens, at, size)
+    samples = 1 if depth else k
+    reference = np.asarray(case.frame.stages[array])[index]
+    port = np.asarray(given.handed[array])[index]
+    rows = [number("the object's offset", at)]
+    near = np.flatnonzero((found.found.rows // samples == row) & (found.found.columns // samples == column))
+    rows.append(told("triangles that may cover its samples", len(near)))
+    for i in near[:MOST]:
+        name = f"triangle {int(found.found.triangle[i])}"
+        rows.append(told(f"{name}: covers", "certainly" if found.found.certain[i] else "perhaps: near an edge"))
+        if found.depth is not None:
+            rows.append(number(f"{name}: depth", found.depth[i]))
+    if depth:
+        assert found.winners is not None
+        rows.append(told("may be empty", "yes" if found.winners.empty.reshape(size, size)[row, column] else "no"))
+    else:
+        low, high = (maps.counts(c, k)[row, column] for c in found.covered)
+        rows.append(told("share of its samples that are covered", f"from {low:.9g} to {high:.9g}"))
+    rows.append(told("texel", f"{reference:.9g}", f"{port:.9g}", legal=_legal(given, array, index)))
+    return rows
+
+
+def _legal(given: Inputs, array: str, index: tuple[int, ...]) -> bool:
+    from ibr_ref.oracle.referees.shadows import replay_maps
+
+    found = (replay_maps.images if array == "maps.image" else replay_maps.warped)(given)
+    return found is None or not bool(found.wrong[index])

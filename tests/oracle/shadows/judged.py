@@ -1,0 +1,82 @@
+"""Cases, what is handed in for them, and the referee."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from ibr_ref.oracle.cases import Case
+from ibr_ref.oracle.cases.shadows import CASES
+from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.ports.arithmetic import Policy
+from ibr_ref.oracle.ports.shadows import Port
+from ibr_ref.oracle.referees.shadows import ShadowsReferee
+
+Arrays = dict[str, Any]
+
+REFEREE = ShadowsReferee()
+"""One for all: it keeps what follows from the last case and device."""
+REAL = "shadows-stage"
+SMALL = tuple(name for name in CASES if name != REAL)
+
+
+@cache
+def case(name: str) -> Case:
+    return CASES[name]()
+
+
+@cache
+def reference(name: str) -> Arrays:
+    """The reference's own frame, as a port would hand it in."""
+    frame = case(name).frame
+    stages = {array: value for array, value in frame.stages.items() if "margin" not in array}
+    return {**stages, "color": frame.color, "depth": frame.depth}
+
+
+def drawn(name: str, policy: Policy = Policy(), port: Any = Port) -> Arrays:  # noqa: B008
+    """What a plain port hands in: a picture that is held in bytes as bytes."""
+    described = case(name)
+    arrays: Arrays = port(described.scene, described.params, policy, described.inputs).render()
+    return arrays | in_bytes(arrays) if policy.color_bits else arrays
+
+
+@cache
+def plain(name: str) -> Arrays:
+    """The plain port's, in floats."""
+    return drawn(name)
+
+
+def picture(arrays: Arrays) -> Arrays:
+    """The final image alone."""
+    return {name: arrays[name] for name in ("color", "depth")}
+
+
+def in_bytes(arrays: Arrays) -> Arrays:
+    """The final colour as a PNG has it."""
+    color = np.nan_to_num(arrays["color"])
+    return {"color": np.floor(255.0 * np.clip(color, 0.0, 1.0) + 0.5).astype(np.uint8)}
+
+
+def stages(name: str, handed: Arrays, profile: str | None = None) -> list[Judgement]:
+    return REFEREE.judge_stages(case(name), PROFILES[profile or case(name).profile], handed)
+
+
+def image(name: str, handed: Arrays, profile: str | None = None) -> Judgement:
+    return REFEREE.judge_image(case(name), PROFILES[profile or case(name).profile], handed)
+
+
+def complaints(judgements: list[Judgement]) -> list[str]:
+    """What is wrong, in words that a failing test shows."""
+    return [
+        f"{j.stage}: {int(j.wrong.sum())} {j.element}s, by {[j.arrays[i] for i in np.unique(j.blame[j.wrong])]}, "
+        f"first {np.argwhere(j.wrong)[0].tolist()}"
+        for j in judgements
+        if j.wrong.any()
+    ]
+
+
+def first_wrong(judgements: list[Judgement]) -> str | None:
+    return next((j.stage for j in judgements if j.wrong.any()), None)

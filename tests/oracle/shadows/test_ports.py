@@ -1,0 +1,126 @@
+"""The referee on ports: no legal one is accused, hardly a bug gets away, and the stage that it is in is named."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from ibr_ref.oracle.ports.arithmetic import Policy
+from ibr_ref.oracle.ports.faults import Mutant, Variant
+from ibr_ref.oracle.ports.shadows import MUTANTS, VARIANTS, Port
+from tests.oracle.shadows.judged import (
+    REAL,
+    SMALL,
+    complaints,
+    drawn,
+    first_wrong,
+    image,
+    in_bytes,
+    picture,
+    plain,
+    stages,
+)
+
+SURVIVORS = 0.05
+"""Of the bugs, the most that may get away when stages are handed in; and the most that may be blamed on another stage."""
+HIDDEN = 0.15
+"""Of the bugs that a picture can show, the most that may get away by the final image alone."""
+
+
+@pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.name)
+@pytest.mark.parametrize("name", SMALL)
+def test_no_legal_variant_is_accused(name: str, variant: Variant) -> None:
+    arrays = drawn(name, variant.policy, variant.port or Port)
+    judged = [
+        *stages(name, arrays, variant.profile),
+        image(name, picture(arrays), variant.profile),
+        image(name, picture(arrays) if variant.policy.color_bits else in_bytes(arrays), variant.profile),
+    ]
+    assert complaints(judged) == []
+
+
+def test_no_legal_variant_is_accused_in_real_size() -> None:
+    arrays = drawn(REAL)
+    assert complaints([*stages(REAL, arrays, "ieee32"), image(REAL, picture(arrays), "ieee32")]) == []
+
+
+@cache
+def verdicts() -> dict[str, tuple[str | None, bool]]:
+    """By mutant the first wrong stage in the first case that shows one, and whether some case's image alone shows it."""
+    found: dict[str, tuple[str | None, bool]] = {mutant.name: (None, False) for mutant in MUTANTS}
+    for name in SMALL:
+        for mutant in MUTANTS:
+            stage, seen = found[mutant.name]
+            if stage is None or not (seen or mutant.hidden):
+                found[mutant.name] = _verdict(mutant, name, stage, seen)
+    return found
+
+
+def _verdict(mutant: Mutant, name: str, stage: str | None, seen: bool) -> tuple[str | None, bool]:
+    arrays = drawn(name, port=mutant.port)
+    changed = {a for a, v in arrays.items() if not np.array_equal(v, plain(name)[a], equal_nan=True)}
+    if changed and stage is None:
+        stage = first_wrong(stages(name, arrays, "ieee32"))
+    if "color" in changed and not seen:
+        seen = bool(image(name, in_bytes(arrays), "ieee32").wrong.any())
+    return stage, seen
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda m: m.name)
+def test_a_bug_that_should_be_killed_is(mutant: Mutant) -> None:
+    stage, _ = verdicts()[mutant.name]
+    assert mutant.survives or stage == mutant.stage
+
+
+def test_nearly_all_bugs_are_killed_and_named() -> None:
+    found = verdicts()
+    survivors = [m.name for m in MUTANTS if found[m.name][0] is None]
+    misnamed = [m.name for m in MUTANTS if found[m.name][0] not in (None, m.stage)]
+    shown = [m for m in MUTANTS if not m.hidden]
+    unseen = [m.name for m in shown if not found[m.name][1]]
+    assert len(survivors) <= SURVIVORS * len(MUTANTS), survivors
+    assert len(misnamed) <= SURVIVORS * len(MUTANTS), misnamed
+    assert len(unseen) <= HIDDEN * len(shown), unseen
+
+
+def random_policy(random: np.random.Generator, profile: str) -> Policy:
+    """A device that the profile has room for."""
+    backwards, fused = (bool(random.integers(2)) for _ in range(2))
+    if profile == "ieee32":
+        return Policy(backwards=backwards, fused=fused)
+    return Policy(
+        backwards=backwards,
+        fused=fused,
+        reciprocal=bool(random.integers(2)),
+        weight_bits=8 if random.integers(2) else None,
+        weight_rounding=str(random.choice(["nearest", "down"])),
+        subpixel_rounding=str(random.choice(["even", "up", "down"])),
+        depth_bits=24 if random.integers(2) else None,
+        color_bits=8 if random.integers(3) == 0 else None,
+        jitter=int(random.integers(3)) if profile == "gl" else 0,
+        snapped_varyings=bool(random.integers(2)) if profile == "gl" else True,
+        seed=int(random.integers(1 << 30)),
+    )
+
+
+def test_a_million_pixels_of_random_devices_are_all_accepted() -> None:
+    random = np.random.default_rng(20)
+    pixels, widths = 0, []
+    for profile, share in (("ieee32", 2), ("vulkan", 4), ("gl", 4)):
+        for name in SMALL:
+            for _ in range(share):
+                policy = random_policy(random, profile)
+                judged = image(name, picture(drawn(name, policy)), profile)
+                assert complaints([judged]) == [], (name, policy)
+                widths.append(np.median(judged.width))
+                pixels += judged.wrong.size
+    assert pixels >= 1_000_000
+    assert np.median(widths) < 1e-3, "the accepted sets are too wide to say anything"
+
+
+def test_a_looser_device_forgives_more() -> None:
+    arrays = drawn("shadows-box", Policy(subpixel_rounding="down", weight_bits=8))
+    assert image("shadows-box", picture(arrays), "ieee32").wrong.any()
+    assert not image("shadows-box", picture(arrays), "vulkan").wrong.any()
