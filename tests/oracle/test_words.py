@@ -41,7 +41,7 @@ def test_the_first_wrong_part_is_shown() -> None:
                 undecided=size > 0.0,
                 width=size,
                 blame=np.zeros((6, 8), np.int8),
-            )  # fmt: skip
+            )
         )
     verdict = examine(case, {}).verdict
     examination = Examination(case=case, handed={}, judgements=judgements, verdict=verdict)
