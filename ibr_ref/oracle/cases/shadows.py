@@ -217,9 +217,9 @@ def direct() -> Case:
 
 def masks() -> Case:
     """Rendered masks."""
-    about = "Masks of 3 x 3 samples a texel rendered for each of five light samples."
+    about = "Masks rendered for each of five light samples."
     return _case(
-        "masks", "typical", about, _scene(), _params(method="direct", light_samples=5, map_samples=3), profile="gl"
+        "masks", "typical", about, _scene(), _params(method="direct", light_samples=5), profile="gl"
     )
 
 
