@@ -120,6 +120,17 @@ def search(repeat, keep, fragments, count, constants, settings, maps, hits):
 
 
 @device
+def take(fragments, count, found, hits):
+    """Stage march where a search has been through all pixels before: its hits."""
+    for i in range(count):
+        pixel = fragments.pixel[i]
+        hits.linear_index[i], hits.hit_index[i] = found.linear_index[pixel], found.hit_index[pixel]
+        hits.u[i], hits.v[i], hits.h[i] = found.u[pixel], found.v[pixel], found.h[pixel]
+        hits.height_before[i] = found.height_before[pixel]
+        hits.margin[i], hits.domain_margin[i] = found.margin[pixel], found.domain_margin[pixel]
+
+
+@device
 def shade(repeat, keep, hits, count, constants, settings, maps, shades):
     """Stage shade: colours of all hits."""
     texels, columns, rows = maps.height
@@ -136,20 +147,24 @@ def shade(repeat, keep, hits, count, constants, settings, maps, shades):
     if has_facade:
         facades(hits, count, maps.facade.texels, maps.facade.columns, maps.facade.rows, constants, shades)
     if settings.shadow_steps > 0:
-        floor = -1.0 if settings.method == RELIEF else 0.0
-        self_shadow(repeat, keep, hits, count, texels, columns, rows, constants.light, floor, settings, shades)
+        self_shadow(repeat, keep, hits, count, texels, columns, rows, constants.light, settings, shades)
     light_hits(hits, count, constants, shades)
 
 
 @device
-def _draw_band(repeat, keep, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target):
+def _draw_band(
+    repeat, keep, found, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target
+):  # fmt: skip
     count = _count(triangles, width, first_row, last_row)
     if count == 0:
         return
     fragments, hits, shades = fragments_for(count), hits_for(count), shades_for(count)
     verdicts = np.empty(count, np.int8)
     rasterize(triangles, faces, width, first_row, last_row, settings.polygon_depth, fragments)
-    search(repeat, keep, fragments, count, constants, settings, maps, hits)
+    if found is None:
+        search(repeat, keep, fragments, count, constants, settings, maps, hits)
+    else:
+        take(fragments, count, found, hits)
     project_hits(fragments, count, constants, settings, hits)
     if settings.method == PROTRUDED or settings.method == EXACT:
         mark_steep(count, settings, hits)
@@ -169,6 +184,7 @@ def _draw_band(repeat, keep, triangles, faces, constants, settings, maps, patch_
 def draw(
     repeat,
     keep,
+    found,
     triangles,
     faces,
     constants,
@@ -187,7 +203,8 @@ def draw(
     """Draw one polygon into the target: patch_id 0 clears it first, band by band; others come over what is there.
 
     repeat: None (clamp) or True, the wrap mode of its maps. keep: None or True, all stage arrays are wanted, not the
-    picture alone. Both are types to the compiler: what they rule out is not even compiled. faces: the face number of
+    picture alone. found: None, or the hits of all pixels, by a search that has been (`compared`). All three are types to the
+    compiler: what they rule out is not even compiled. faces: the face number of
     each quad. heights, colors, normals, facade: `Map`s (one by one: Numba's parallel loops take no nested tuples). The
     bands are taken in an order that gives every thread an even sample of the picture.
     """
@@ -201,5 +218,17 @@ def draw(
         if patch_id == 0:
             clear(target, background, first_row * width, last_row * width)
         _draw_band(
-            repeat, keep, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target
+            repeat,
+            keep,
+            found,
+            triangles,
+            faces,
+            constants,
+            settings,
+            maps,
+            patch_id,
+            width,
+            first_row,
+            last_row,
+            target,
         )
