@@ -18,14 +18,12 @@ from ibr_ref.displacement import cones, maximum_mipmap
 from ibr_ref.displacement.buffers import Hits, Uniforms
 from ibr_ref.displacement.cone import cone_search
 from ibr_ref.displacement.donnelly import MOST_VOXELS, distance_texture, donnelly_search
-from ibr_ref.displacement.fragment import Map
+from ibr_ref.displacement.fragment import Map, base_points
 from ibr_ref.displacement.inputs import Params
 from ibr_ref.displacement.mcguire import levels_at, mcguire_search, mip_chain
 from ibr_ref.displacement.relaxed_cone import relaxed_cone_search
 from ibr_ref.displacement.tatarchuk import tatarchuk_search
 from ibr_ref.displacement.welsh import welsh_search
-from ibr_ref.jit import device, kernel, prange
-from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, fill_varyings
 from ibr_ref.scene import BasePolygon
 from ibr_ref.scene.checks import reject
 
@@ -147,7 +145,7 @@ def search(
     pixels = width * rows
     found = Found(_no_hits(pixels), np.zeros(pixels, np.int32))
     points = np.full((3, pixels), np.nan)
-    _points(triangles, width, rows, points)
+    base_points(triangles, width, rows, points)
     repeat = True if polygon.domain == "repeat" else None
     heights = np.asarray(polygon.height_map, np.float64)
     SEARCHES[params.method](_Search(polygon, heights, height, repeat, points, constants, params, found))
@@ -173,19 +171,3 @@ def _no_hits(pixels: int) -> Hits:
         steep_margin=full(np.inf),
         depth=full(np.nan),
     )
-
-
-@device
-def _points_of_row(triangles, width, row, points):
-    for t in range(len(triangles.source)):
-        if triangles.rows[t, 0] <= row < triangles.rows[t, 1]:
-            edges = edges_in_row(triangles.x[t], triangles.y[t], row)
-            first, stop = columns_in_row(edges, width)
-            fill_varyings(edges, first, stop, triangles.varyings[t], triangles.w[t], points, row * width + first)
-
-
-@kernel
-def _points(triangles, width, rows, points):
-    """Stage raster for the base face: its triangles share no pixel."""
-    for row in prange(rows):
-        _points_of_row(triangles, width, row, points)

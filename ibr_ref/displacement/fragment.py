@@ -87,6 +87,22 @@ def rasterize(triangles, faces, width, first_row, last_row, with_depth, fragment
 
 
 @device
+def _points_of_row(triangles, width, row, points):
+    for t in range(len(triangles.source)):
+        if triangles.rows[t, 0] <= row < triangles.rows[t, 1]:
+            edges = edges_in_row(triangles.x[t], triangles.y[t], row)
+            first, stop = columns_in_row(edges, width)
+            fill_varyings(edges, first, stop, triangles.varyings[t], triangles.w[t], points, row * width + first)
+
+
+@kernel
+def base_points(triangles, width, rows, points):
+    """Stage raster for a base face alone, whose triangles share no pixel: points (3, P), one a pixel."""
+    for row in prange(rows):
+        _points_of_row(triangles, width, row, points)
+
+
+@device
 def search(repeat, keep, fragments, count, constants, settings, maps, hits):
     """Stage march: the hits of all fragments, by the method's search."""
     texels, columns, rows = maps.height

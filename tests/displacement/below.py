@@ -22,7 +22,7 @@ TILTED: dict[str, Any] = {
     "corner": (0.05, -0.1, 0.02),
     "edge_u": (0.9, 0.1, 0.1),
     "edge_v": (0.2, 1.0, -0.1),
-    "height_scale": 0.2,
+    "height_scale": 0.12,
 }
 """A parallelogram whose edges are not at right angles."""
 

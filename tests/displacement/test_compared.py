@@ -24,16 +24,15 @@ def test_the_same_picture_without_stages(method: str) -> None:
 
 @each
 def test_flat_tops_at_the_polygon_are_the_polygon(method: str) -> None:
-    """H = 1 everywhere: depth 0, whichever the search; Welsh's offset is the whole height, and leaves the map."""
+    """H = 1 everywhere: depth 0, whichever the search; Welsh's offset is the whole height."""
     result = frame(square(np.ones((8, 8))), camera(), method=method)
-    covered, hit = result.stages["raster.face"] == 0, result.stages["march.hit"]
-    assert covered.sum() > 200
-    if method == "welsh":
-        assert (hit[covered][:, 2] == 0.0)[np.isfinite(hit[covered][:, 2])].all()
-    else:
-        tolerance = 0.5 / 32 if method == "donnelly" else 1e-12
-        assert np.abs(hit[covered][:, :2] - result.stages["raster.patch"][covered][:, :2]).max() <= 4 * tolerance
-        assert np.abs(hit[covered][:, 2]).max() <= tolerance
+    kept = result.stages["march.hit_index"] >= 0
+    assert kept.sum() > 100
+    u, v, h = result.stages["march.hit"][kept].T
+    if method != "welsh":
+        tolerance = 4 * 0.5 / 32 if method == "donnelly" else 1e-12
+        assert np.abs(result.stages["raster.patch"][kept][:, :2].T - (u, v)).max() <= tolerance
+    assert np.abs(h).max() <= (0.5 / 32 if method == "donnelly" else 1e-12)
 
 
 @each
@@ -56,7 +55,7 @@ def test_each_polygon_of_several_has_hits_of_its_own(method: str) -> None:
     assert {0, 1} <= set(np.unique(patch_id))
     for number, single in enumerate(alone):
         here = (patch_id == number) & (both.stages["march.hit_index"] >= 0)
-        assert here.sum() > 100
+        assert here.sum() > 50
         for name in ("march.hit", "march.fetches", "shade.albedo"):
             assert same(both.stages[name][here], single.stages[name][here])
 

@@ -96,5 +96,5 @@ def test_relief_mapping_with_many_steps_comes_to_the_same() -> None:
     polygon = square(noise(8, 8))
     ours = frame(polygon, camera(), method="maximum_mipmap").stages["march.hit"]
     kept = np.isfinite(ours[..., 2])
-    assert kept.sum() > 200
+    assert kept.sum() > 150
     assert np.abs(ours - fine_relief(polygon))[kept].max() < 1e-5

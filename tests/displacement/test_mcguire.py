@@ -36,7 +36,7 @@ def steps_down(ray: Below, height_map: Map, steps: int, bias: float) -> tuple[Ex
 def test_hits_and_fetches_are_those_of_a_plain_loop(polygon: BasePolygon, view: Camera, bias: float) -> None:
     result, rays = compared(polygon, view, "mcguire", linear_steps=7, lod_bias=bias)
     walks = {pixel: steps_down(ray, Map(polygon), 7, bias) for pixel, ray in rays.items()}
-    check(result, {pixel: hit for pixel, (hit, _) in walks.items()}, least=40)
+    check(result, {pixel: hit for pixel, (hit, _) in walks.items()}, least=20)
     clear = result.stages["march.margin"] > 1e-9
     assert all(result.stages["march.fetches"][pixel] == n for pixel, (_, n) in walks.items() if clear[pixel])
 
@@ -72,7 +72,7 @@ def test_levels_beyond_the_last_are_the_last() -> None:
 @pytest.mark.parametrize(("bias", "highest"), [(0.0, 1.0), (1.0, 0.25), (2.0, 0.0625), (1.5, 0.15625)])
 def test_a_bias_lowers_what_it_blurs(bias: float, highest: float) -> None:
     """A spike of one texel has a quarter of its height a level on: the bias does not find it, it takes it away."""
-    view = camera(eye=(0.9, -0.1, 0.6), target=(0.508, 0.508, -0.1), vertical_fov=6.0, width=64, height=48)
+    view = camera(eye=(0.9, -0.1, 0.6), target=(0.5, 0.5, -0.15), vertical_fov=24.0, width=160, height=120)
     result = frame(square(spike(64, 64, 32, 32, 1.0)), view, method="mcguire", linear_steps=400, lod_bias=bias)
     found = 1.0 + np.nanmax(result.stages["march.hit"][..., 2])
     assert 0.5 * highest < found <= highest

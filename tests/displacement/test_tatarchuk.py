@@ -32,7 +32,7 @@ def search(ray: Below, height_map: Map, least: int, most: int) -> Expected:
 @pytest.mark.parametrize("polygon", polygons().values(), ids=polygons())
 def test_hits_are_those_of_a_plain_loop(polygon: BasePolygon, view: Camera, least: int, most: int) -> None:
     result, rays = compared(polygon, view, "tatarchuk", min_steps=least, max_steps=most)
-    check(result, {pixel: search(ray, Map(polygon), least, most) for pixel, ray in rays.items()}, least=40)
+    check(result, {pixel: search(ray, Map(polygon), least, most) for pixel, ray in rays.items()}, least=20)
 
 
 @pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
