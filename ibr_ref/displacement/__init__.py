@@ -34,16 +34,16 @@ hit and shade.* NaN, height_before 0, steep False.
 | shade.lit_margin | (H, W) float64 | smallest abs(h + bias - H) of the shadow's samples; inf without samples |
 | shade.axis_margin | (H, W) float64 | how clearly a facade's wall faces u or v; inf without a facade |
 | shade.facing_margin | (H, W) float64 | abs(n.l) |
-| march.fetches | (H, W) int32 | texture fetches of the search, of systems with kernels of their own (below) only |
 | resolve.margin | (H, W) float64 | distance in window depth to the nearest other kept fragment; inf if there is none |
 
 **Systems to compare with** (`method=`), all on the base face alone: `"texture"`; `"relief"` (Policarpo 2005); `"welsh"`,
 `"mcguire"`, `"donnelly"` and `"tatarchuk"` of the paper's table 1; and beyond the paper `"cone"` (Dummer 2006),
 `"relaxed_cone"` (Policarpo & Oliveira 2007) and `"maximum_mipmap"` (Tevs 2008, Drobot 2009). Each has a file with its source
-and its formulas. The last seven keep no steep walls, their `linear_index` and `hit_index` are the number of the step that
-the search ended with (of the maximum mipmap: of fetches), and margins are kept for comparisons with the map alone: none
-for the number of steps that depends on the view's angle, for steps by distances, cones and quadtree nodes. Where the map
-ends at its border, whatever would be shown from beside it is discarded. `"welsh"` has the polygon's window depth.
+and its formulas. The last seven have one stage more, `march.fetches` (H, W) int32: the texture fetches of the search. They
+keep no steep walls; their `linear_index` and `hit_index` are the number of the step that the search ended with (of the
+maximum mipmap: of fetches). Margins are kept for comparisons with the map alone: none for the number of steps that depends
+on the view's angle, for steps by distances or cones, for the quadtree's nodes. Where the map ends at its border, whatever
+would be shown from beside it is discarded. `"welsh"` has the polygon's window depth.
 
 **Settled here**, where the paper and common practice leave it open:
 

@@ -123,7 +123,7 @@ def _cones_of_row(repeat, relaxed, texels, columns, rows, maxima, block_rows, bl
 
 @kernel
 def cones(repeat, relaxed, texels, columns, rows, maxima, block_rows, block_columns, ratios):
-    """Ratios of all texels. relaxed: None or True."""
+    """Ratios of all texels. relaxed: None or True; maxima: of the blocks, flat."""
     for i in prange(np.int64(rows)):
         _cones_of_row(repeat, relaxed, texels, columns, rows, maxima, block_rows, block_columns, i, ratios)
 
@@ -135,6 +135,6 @@ def cone_map(heights: NDArray[np.float64], repeat: bool, relaxed: bool) -> NDArr
     ratios = np.empty(heights.shape)
     cones(
         True if repeat else None, True if relaxed else None, heights.reshape(-1), float(columns), float(rows),
-        maxima.reshape(-1), *maxima.shape, ratios.reshape(-1),
+        maxima.reshape(-1), maxima.shape[0], maxima.shape[1], ratios.reshape(-1),
     )  # fmt: skip
     return ratios
