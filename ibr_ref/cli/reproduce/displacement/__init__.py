@@ -40,8 +40,8 @@ REPRODUCTION = Reproduction(
         ),
         (
             "The earlier systems' parameters are not given.",
-            "Those of their authors' programs where there are any (Tatarchuk 8 to 50 steps, relaxed cones 15 + 8); the table "
-            "says which.",
+            "Those of their authors' programs where there are any (Tatarchuk 8 to 50 steps, relaxed cones 15 + 8); the "
+            "table says which.",
         ),
         (
             "Where earlier systems fetch from beside a map that ends.",

@@ -17,6 +17,7 @@ from ibr_ref.io import Frame
 
 PARAMS = Params(linear_steps=50)
 RELIEF = replace(PARAMS, method="relief")
+FINE = replace(PARAMS, linear_steps=800)
 
 
 def _scene(size: tuple[int, int]) -> Scene:
@@ -69,7 +70,7 @@ def figure_6(folder: Path, within: Within, size: tuple[int, int] = (640, 480)) -
     within("protruded displacement mapping", 0, 1)
     a = render(scene, replace(PARAMS, method="texture"))
     b, c, e, f = base(scene, PARAMS), base(tall, PARAMS), render(tall, PARAMS), render(whole, PARAMS)
-    exact = render(tall, Params(method="exact"))
+    exact, fine = render(tall, Params(method="exact")), render(tall, FINE)
     d_color = without_faces(tall, e, (1, 2))
     pictures = [
         ("(a) texture mapping", a.color), ("(b) protruded", b.color), ("(c) twice the height", c.color),
@@ -82,16 +83,16 @@ def figure_6(folder: Path, within: Within, size: tuple[int, int] = (640, 480)) -
         "(e) add one face and all, (f) puts a texture on the walls.",
     )  # fmt: skip
     ground = np.abs(b.color - a.color).max(axis=-1)[~raised(scene, render(scene, Params(method="exact")))]
-    return Found(figures=(figure,), claims=_claims(tall, ground, (b, c, e, f), exact, whole))
+    return Found(figures=(figure,), claims=_claims(tall, ground, (b, c, e, f), exact, fine, whole))
 
 
 def _claims(
-    tall: Scene, ground: np.ndarray, frames: tuple[Frame, Frame, Frame, Frame], exact: Frame, whole: Scene
+    tall: Scene, ground: np.ndarray, frames: tuple[Frame, Frame, Frame, Frame], exact: Frame, fine: Frame, whole: Scene
 ) -> tuple[Claim, ...]:
     b, c, e, f = frames
     drifts = drift(tall, b)[1], drift(tall, c)[1]
-    cut, shown = overflow(tall, exact, c), overflow(tall, exact, e)
-    outlines = [overlap(raised(tall, frame), raised(tall, exact)) for frame in (c, e)]
+    shown = [overflow(tall, exact, frame) or 0.0 for frame in (c, e, fine)]
+    outlines = [overlap(raised(tall, frame), raised(tall, exact)) for frame in (c, e, fine)]
     wall = walls(tall, exact)
     smear, cured = wall_texture(tall, e, wall)[1], wall_texture(whole, f, wall)[1]
     return (
@@ -105,9 +106,11 @@ def _claims(
         Claim(
             claim="Auxiliary faces complete the silhouette (figure 6 c to e).",
             published="figure 6",
-            measured=f"overflow shown {cut or 0:.0%} without and {shown or 0:.1%} with them; outline of the box against the "
-            f"exact one {outlines[0]:.3f} and {outlines[1]:.4f}",
-            holds=(shown or 0) > 0.99 and outlines[1] > 0.99,
+            measured=f"overflow shown {shown[0]:.0%} without, {shown[1]:.1%} with them (N = 50), {shown[2]:.1%} with "
+            f"N = 800; outline of the box against the exact one {outlines[0]:.3f}, {outlines[1]:.3f}, {outlines[2]:.4f}",
+            holds=shown[2] > 0.99 and outlines[2] > 0.99,
+            why="The faces leave nothing out; what is missing with N = 50 are rays that pass the box's edges by less "
+            "than a linear step.",
         ),
         Claim(
             claim="Without detected walls a line of texels is stretched over the box's sides (figure 6 e, f).",
