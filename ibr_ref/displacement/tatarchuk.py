@@ -12,7 +12,7 @@ import numpy as np
 
 from ibr_ref.displacement.below import border, distance_to_eye, in_domain, keep, view_ray
 from ibr_ref.jit import device, kernel, prange
-from ibr_ref.pipeline.sampling import fetch, lerp
+from ibr_ref.pipeline.sampling import fetch
 
 
 @device
@@ -30,7 +30,7 @@ def _march(repeat, points, pixel, constants, texels, columns, rows, least, most,
         return
     bounded = repeat is None
     cosine = constants.scale / distance_to_eye(constants, along_u, along_v)
-    count = np.int64(lerp(1.0 * most, 1.0 * least, cosine))
+    count = np.int64(most + (least - most) * cosine)  # HLSL's lerp: exact where both are the same
     margin, nearest, before, step, depth = np.inf, np.inf, 1.0, count, 1.0
     for k in range(1, count + 1):
         ray = 1.0 - k / count
