@@ -52,7 +52,7 @@ def choose_references(images: Sequence[DepthImage], coverage: float = 0.99, *, t
     if not any(reference.points for reference in references):
         raise checks.reject("images", f"{len(references)} images without a valid pixel", "at least one valid pixel")
     seen = seen_points(images, tolerance)
-    return greedy(seen, _areas(references, seen), coverage)
+    return greedy(seen, point_areas(images, seen), coverage)
 
 
 def greedy(seen: NDArray[np.bool_], areas: NDArray[np.int64], coverage: float) -> Selection:
@@ -98,9 +98,9 @@ def _sees(image: DepthImage, points: NDArray[np.float64], tolerance: float) -> N
     return result
 
 
-def _areas(references: Sequence[Prepared], seen: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """(V,) what each point counts for, in units; zero areas are none, so that every point counts."""
-    areas = np.concatenate([_footprints(reference) for reference in references]) / seen.sum(axis=0)
+def point_areas(images: Sequence[DepthImage], seen: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """(V,) what each point counts for, in whole units, at least one; seen (N, V): which image sees which point."""
+    areas = np.concatenate([_footprints(prepare(image)) for image in images]) / seen.sum(axis=0)
     units: NDArray[np.int64] = np.maximum(1.0, np.floor(areas / areas.sum() * _UNITS)).astype(np.int64)
     return units
 

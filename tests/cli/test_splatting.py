@@ -128,9 +128,9 @@ def test_psnr_by_hand() -> None:
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from ibr_ref.cli.bench import splatting
 
-    scenes = list(splatting._scenes(None))
+    scenes = list(splatting.scenes(None))
     assert [name for name, *_ in scenes] == list(splatting.PAPER_MPPS)
-    monkeypatch.setattr(splatting, "_scenes", lambda msr: scenes[:1])
+    monkeypatch.setattr(splatting, "scenes", lambda msr: scenes[:1])
     code, out, err = run("bench", "splatting", "--repeat", "1", "--json", tmp_path / "times.json")
     assert (code, err) == (0, "")
     assert "7800GTX" in out
@@ -144,7 +144,7 @@ def test_bench_prints_the_quality_of_the_views(run: Run, tmp_path: Path, monkeyp
     """The figures that the README gives, as the issue of this method asks for them."""
     from ibr_ref.cli.bench import splatting
 
-    monkeypatch.setattr(splatting, "_scenes", lambda msr: iter(()))
+    monkeypatch.setattr(splatting, "scenes", lambda msr: iter(()))
     path = tmp_path / "times.json"
     code, out, err = run("bench", "splatting", "--msr", REAL / "breakdancers", "--json", path)
     assert (code, err) == (0, "")
