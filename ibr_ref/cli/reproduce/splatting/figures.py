@@ -203,6 +203,6 @@ def _floor() -> DepthImage:
     )
     row, column = np.mgrid[:size, :size]
     tiles = ((row // 32 + column // 32) % 2)[..., None]
-    grains = (0.65 + 0.35 * ((row * 7919 + column * 104729) % 101) / 100.0)[..., None]
+    grains = (0.65 + 0.35 * ((row * 57 + column * 39) % 101) / 100.0)[..., None]
     color = np.where(tiles == 1, (0.85, 0.45, 0.25), (0.35, 0.6, 0.85)) * grains
     return DepthImage(color=color, depth=np.full((size, size), 2.0), camera=camera)
