@@ -29,7 +29,7 @@ def run(folder: Path, within: Within) -> Found:
         within("figures", done, 3)
         parts.append(part(folder))
     return Found(
-        figures=tuple(figure for part in parts for figure in part.figures),
+        figures=tuple(sorted((f for part in parts for f in part.figures), key=lambda figure: figure.title)),
         claims=tuple(claim for part in parts for claim in part.claims),
     )
 

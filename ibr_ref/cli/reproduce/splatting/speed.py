@@ -105,8 +105,13 @@ def _row(row: Timed) -> tuple[Cell, ...]:
     column = COLUMNS.index(row.system.paper) if row.system.paper else None
     fps, mpps = (None if column is None else paper[row.images][column] for paper in (PAPER_FPS, PAPER_MPPS))
     label = f"{row.system.name} ({row.system.paper})" if row.system.paper else row.system.name
-    milliseconds = (1e3 * row.best, 1e3 * row.median)
-    return row.images, row.points, label, *milliseconds, 1.0 / row.best, row.mpps, fps, mpps
+    times = (_milliseconds(row.best), _milliseconds(row.median))
+    return row.images, row.points, label, *times, 1.0 / row.best, row.mpps, fps, mpps
+
+
+def _milliseconds(seconds: float) -> Cell:
+    """Whole ones from a second on, which the page would write with an exponent."""
+    return 1e3 * seconds if seconds < 1.0 else round(1e3 * seconds)
 
 
 def _claims(rows: Sequence[Timed]) -> tuple[Claim, ...]:
