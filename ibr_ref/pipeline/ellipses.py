@@ -199,9 +199,10 @@ def _shares(ellipses: Ellipses, cutoff: float, target: Blend) -> Shares:
 @device
 def _normalize_row(background, weight, color):
     for column in range(len(weight)):
+        shown = weight[column] > 0.0
         for channel in range(3):
-            total = color[column, channel] / weight[column]
-            color[column, channel] = min(total, 1.0) if weight[column] > 0.0 else background[channel]
+            total = color[column, channel] / (weight[column] if shown else 1.0)
+            color[column, channel] = min(total, 1.0) if shown else background[channel]
 
 
 @kernel

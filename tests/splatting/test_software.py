@@ -18,7 +18,7 @@ from tests.splatting.test_bad_input import IMAGE, rejected
 pytestmark = pytest.mark.usefixtures("one_thread")
 
 
-@pytest.mark.parametrize("name", TINY)
+@pytest.mark.parametrize("name", [name for name in TINY if name != "ellipses"])
 def test_the_loop_makes_every_bit_of_the_stages(name: str) -> None:
     scene, params = SCENES[name](48, 36)
     shader = splatting.render(scene, params)

@@ -33,7 +33,7 @@ def test_every_step_has_a_name_of_its_own() -> None:
 
 
 def test_a_law_by_hand_closes_a_wall_that_faces_both_cameras() -> None:
-    """Turned by 27 degrees, where a step of the grid needs 1.34 times its side; towards the border d grows, not the depth."""
+    """Turned by 27 degrees, where a step of the grid needs 1.34 times its side; d grows towards the border."""
     reference, view = looking((0, -4, 0)), looking((0, -2, 0), size=(64, 48), up=(1, 0, 2))
     image = image_of(reference, plane_depths(reference, (0, 1, 0), 0.0))
     scene = Scene(images=[image], camera=view, light=None)
