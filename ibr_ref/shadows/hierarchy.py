@@ -6,6 +6,7 @@ heap (the children of i are 2 i + 1 and 2 i + 2), so that nothing points anywher
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -54,7 +55,7 @@ def _sorted(centroids: Array, levels: int) -> tuple[NDArray[np.int64], NDArray[n
     order = np.arange(len(centroids))
     starts = np.array([0, len(centroids)])
     for _ in range(levels):
-        for first, stop in zip(starts[:-1], starts[1:], strict=True):
+        for first, stop in pairwise(starts.tolist()):
             here = centroids[order[first:stop]]
             axis = int(np.argmax(here.max(axis=0) - here.min(axis=0)))
             order[first:stop] = order[first:stop][np.argsort(here[:, axis], kind="stable")]

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.pipeline.transform import transformed
-from ibr_ref.scene.vectors import cross, dot, unit
 from ibr_ref.shadows.maps import View
 
 Array = NDArray[np.float64]
@@ -43,16 +42,6 @@ class Window(NamedTuple):
     near: float
     far: float
     """The caster's nearest and farthest distance."""
-
-
-def frame_of(centre: Array, axes: Array, half_edges: Array, towards: Array) -> Frame:
-    """The frame of a light in the plane of the axes (2, 3), h > 0 on the side of the point `towards` (3,)."""
-    right, normal = unit(axes[0]), unit(cross(axes[0], axes[1]))
-    backwards = -normal if dot(normal, towards - centre) > 0.0 else normal
-    rows = np.stack([right, cross(backwards, right), backwards])
-    view = np.eye(4)
-    view[:3, :3], view[:3, 3] = rows, [-dot(row, centre) for row in rows]
-    return Frame(view, np.array([[dot(row, edge) for row in rows[:2]] for edge in half_edges]))
 
 
 def distances(frame: Frame, points: Array) -> Array:

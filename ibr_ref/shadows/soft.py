@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.io import Frame
 from ibr_ref.scene import checks
+from ibr_ref.scene.vectors import cross, dot, unit
 from ibr_ref.shadows import convolution, maps, parallel, percentage_closer
 from ibr_ref.shadows.inputs import FINEST_MAP, LARGEST_MAP, Params, Scene
 from ibr_ref.shadows.lattice import on_parallelogram
@@ -126,15 +127,25 @@ def _softened(scene: Scene, params: SoftParams, surface: Surface, caster: Array)
     return {"soft.map": distances, "soft.blocker": found.blocker, "soft.shadow": found.shadow}
 
 
+def frame_of(scene: Scene, towards: Array) -> parallel.Frame:
+    """The frame of the light, whose plane is that of the axes; h > 0 on the side of the point `towards` (3,)."""
+    centre, half_edges = scene.light.arrays
+    right, normal = unit(scene.axes[0]), unit(cross(*scene.axes))
+    backwards = -normal if dot(normal, towards - centre) > 0.0 else normal
+    rows = np.stack([right, cross(backwards, right), backwards])
+    view = np.eye(4)
+    view[:3, :3], view[:3, 3] = rows, [-dot(row, centre) for row in rows]
+    return parallel.Frame(view, np.array([[dot(row, edge) for row in rows[:2]] for edge in half_edges]))
+
+
 def _parallel(scene: Scene, surface: Surface, caster: Array) -> tuple[parallel.Frame, parallel.Window, Array]:
     """The light's frame, a window around the caster, and the distances of all that is seen of the receivers."""
-    centre, half_edges = scene.light.arrays
-    frame = parallel.frame_of(centre, scene.axes, half_edges, caster.mean(axis=0))
+    frame = frame_of(scene, caster.mean(axis=0))
     nearest = parallel.distances(frame, caster).min()
     if not nearest > 0.0:
         raise checks.reject(
             "light.position",
-            centre.tolist(),
+            scene.light.arrays[0].tolist(),
             "a light with the whole caster on one side of its plane, that of offset_axes",
         )
     seen = (surface.triangle >= 0) & (surface.triangle < caster_from(scene))

@@ -247,14 +247,7 @@ def loose() -> Case:
     camera = _looking(eye=(0.2, -1.9, 1.2), target=(1.3, -0.3, 0.2), vertical_fov=32.0)
     scene = Scene(polygons=[_gentle(height_scale=0.2)], camera=camera, light=Light(position=(1.8, 1.4, 1.5)))
     about = "Gentle maps for OpenGL as it comes: varyings over unsnapped triangles, weights of eight bits."
-    return _case(
-        "loose",
-        "typical",
-        about,
-        scene,
-        _params(linear_steps=16, binary_steps=4, shadow_steps=2, shadow_bias=0.02),
-        "gl",
-    )
+    return _case("loose", "typical", about, scene, _params(linear_steps=16, binary_steps=4, shadow_steps=2, shadow_bias=0.02), "gl")
 
 
 def metropolis() -> Case:
