@@ -133,9 +133,8 @@ def figures_9_to_12(folder: Path, within: Within) -> Found:
                 Figure(
                     title=f"Figure {number}: {kind} shadow of the {name}",
                     file=file,
-                    caption=f"Warped maps of 512², 15 x 5 control points, {count} sample{'s' if count > 1 else ''}, 640 x 480.",
-                    published=f"a {kind} shadow of the {'teapot' if name == teapot else 'cow'} (11 the hard, 12 the soft one "
-                    "of the cow).",
+                    caption=f"Warped maps of 512², 15 x 5 control points, samples of the light: {count}; 640 x 480.",
+                    published=f"a {kind} shadow of the {'teapot' if name == teapot else 'cow'}.",
                 )
             )
             number += 1

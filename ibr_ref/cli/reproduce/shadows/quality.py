@@ -112,7 +112,8 @@ def _claims_of_maps(found: dict[str, dict[str, tuple[float, float, float]]]) -> 
 def _light_moved() -> Claim:
     """Section 2.3.1: a light that moves is an object that moves the opposite way, each by half of the chair's offset."""
     params = Params(map_size=SIZE, method="direct")
-    moved, turned = [], []
+    moved: list[float] = []
+    turned: list[float] = []
     for scene in _scenes(objects()["chair"], OFFSETS):
         half, light = np.asarray(scene.offset) / 2.0, scene.light
         step = np.array([*-half, 0.0])
@@ -124,10 +125,10 @@ def _light_moved() -> Claim:
     return Claim(
         claim="A moved light throws the shadow of an object that was moved the opposite way.",
         published="in words (section 2.3.1)",
-        measured=f"IoU of the maps {min(moved):.4f} at worst where its target moves with it, {_mean(turned):.3f} in the mean where "
-        "it turns to the old target",
+        measured=f"IoU of the maps {min(moved):.4f} at worst where its target moves with it; {_mean(turned):.3f} in the mean "
+        "where it turns to the old target",
         holds=min(moved) > 0.99,
-        why="Only for a light that keeps its direction. The receivers' places in the map move as well, on the light's matrix.",
+        why="Only for a light that keeps its direction.",
     )
 
 
@@ -192,9 +193,9 @@ def soft_quality(folder: Path, within: Within) -> Found:
         title="Soft shadows against the area light",
         columns=("way", *(f"{name}{what}" for name in meshes for what in ("", ", larger light")), "held, MB"),
         rows=tuple((way, *values, _megabytes(held.get(way))) for way, values in found.items()),
-        how="Mean absolute difference of the shadow (0 lit to 1) in a picture of 320 x 240, where either is > 0, from 610 rays "
-        f"of every point to the light, {SOFT_OFFSETS} random places; maps of {SIZE}²; the light's half side 0.12, the larger "
-        f"one's {WIDE}, the object's largest extent 1. {which()}",
+        how="Mean absolute difference of the shadow (0 lit to 1) in a picture of 320 x 240, where either is > 0, from 610 "
+        f"rays of every point to the light, {SOFT_OFFSETS} random places; maps of {SIZE}²; the light's half side is 0.12, "
+        f"the larger one's {WIDE}, the object's largest extent 1. {which()}",
         note="What is made beforehand was made for the smaller light alone.",
     )
     return Found(tables=(table,), claims=_claims_of_soft(found, list(meshes)))

@@ -19,8 +19,9 @@ Rows = list[dict[str, Any]]
 REPEAT = 10
 
 HOW = (
-    "Milliseconds, the best of ten calls after one that warms up, float64 on {threads} threads of the CPU; the paper: an SGI "
-    "320 with two Pentium II of 450 MHz and Cobalt graphics. Our objects have as many triangles as the paper's have polygons."
+    "Milliseconds, the best of ten calls after one that warms up, float64 on {threads} threads of the CPU; the paper: an "
+    "SGI 320 with two Pentium II of 450 MHz and Cobalt graphics. Our objects have as many triangles as the paper's have "
+    "polygons."
 )
 
 
@@ -43,7 +44,8 @@ def ms(rows: Rows, way: str, size: int, name: str = "kettle") -> float:
 
 
 def _paper(rows: Rows, way: str, size: int) -> int | None:
-    return next(r["paper_ms"] for r in rows if (r["way"], r["map_size"]) == (way, size))
+    paper: int | None = next(r["paper_ms"] for r in rows if (r["way"], r["map_size"]) == (way, size))
+    return paper
 
 
 def _table(title: str, rows: Rows, ways: dict[str, str], note: str = "") -> Table:
@@ -194,7 +196,7 @@ def table_4(folder: Path, within: Within) -> Found:
     mesh = bench.objects()["kettle"]
 
     def measure(size: int) -> Rows:
-        return bench.from_grids(mesh, size, REPEAT) + [_warped(mesh, size)]
+        return [*bench.from_grids(mesh, size, REPEAT), _warped(mesh, size)]
 
     rows = _at_every_size("grids of 32 x 32 maps", within, measure)
     ways = {"grid, raw": "grid, raw", "grid, Haar": "grid, compressed", "warp": "warp 5 x 15"}
@@ -213,8 +215,8 @@ def table_4(folder: Path, within: Within) -> Found:
             (f"{size}²", held["grid, raw", size], paper, held["grid, compressed", size], held["warp 5 x 15", size])
             for size, paper in zip(bench.SIZES, (None, 16, 64, 256), strict=False)
         ),
-        how="Bytes of the arrays that a frame is made from; a byte a texel, as in the paper; wavelet coefficients below 0.02 "
-        "dropped.",
+        how="Bytes of the arrays that a frame is made from; a byte a texel, as in the paper; wavelet coefficients below "
+        "0.02 dropped.",
     )
     return Found(tables=(times, memory), claims=_claims_of_grids(rows, held))
 
@@ -261,7 +263,7 @@ CUTS = 4
 
 
 def complexity(folder: Path, within: Within) -> Found:
-    """From how many triangles on does a warp take less time than rendering?"""
+    """From how many triangles on a warp takes less time than rendering."""
     size, horse = 512, models.horse()
     params = shadows.Params(map_size=size)
     lines: list[tuple[Cell, ...]] = []
