@@ -218,9 +218,7 @@ def direct() -> Case:
 def masks() -> Case:
     """Rendered masks."""
     about = "Masks rendered for each of five light samples."
-    return _case(
-        "masks", "typical", about, _scene(), _params(method="direct", light_samples=5), profile="gl"
-    )
+    return _case("masks", "typical", about, _scene(), _params(method="direct", light_samples=5), profile="gl")
 
 
 def filtered() -> Case:
