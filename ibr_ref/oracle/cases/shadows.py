@@ -218,9 +218,7 @@ def direct() -> Case:
 def masks() -> Case:
     """Rendered masks."""
     about = "Masks rendered for each of five light samples."
-    return _case(
-        "masks", "typical", about, _scene(), _params(method="direct", light_samples=5), profile="gl"
-    )
+    return _case("masks", "typical", about, _scene(), _params(method="direct", light_samples=5), profile="gl")
 
 
 def filtered() -> Case:
@@ -235,7 +233,12 @@ def filtered() -> Case:
         ],
     )
     return _case(
-        "filtered", "adversarial", about, scene, _params(method="direct", content="depth", pcf=True, bias=2e-3)
+        "filtered",
+        "adversarial",
+        about,
+        scene,
+        _params(method="direct", content="depth", pcf=True, bias=2e-3),
+        profile="vulkan",
     )
 
 
