@@ -91,7 +91,7 @@ def test_a_failure_has_the_verdict_s_words_and_the_report(run: Run, tmp_path: Pa
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
         [
-            "FAIL: splatting-ball, first wrong in stage resolve*",
+            "FAIL: splatting-ball, first wrong in stage image*",
             "*image: 40 pixels wrong*",
             "*Witness: pixel*",
             f"*Report: {reports / 'splatting-ball.html'}",

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -30,10 +31,10 @@ def main() -> None:
     write(frame, case, Path(sys.argv[2]))
 
 
-def draw(case: GivenCase, device: gl.Device | None = None) -> gl.Frame:
-    """A frame with all stages. Raises ValueError with the feature that is not ported."""
+def draw(case: GivenCase, device: gl.Device | None = None, **options: Any) -> gl.Frame:
+    """A frame with all stages; the options are those of the method's port. Raises ValueError for what is not ported."""
     ports = {"displacement": displacement.Port, "splatting": splatting.Port, "shadows": shadows.Port}
-    return ports[case.method](device).render(case.scene, case.params)
+    return ports[case.method](device).render(case.scene, case.params, **options)
 
 
 def write(frame: gl.Frame, case: GivenCase, folder: Path) -> None:

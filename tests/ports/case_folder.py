@@ -28,11 +28,6 @@ class GivenCase:
     expected: tuple[str, ...]
     """Names under which arrays may be handed in."""
 
-    @property
-    def features(self) -> dict[str, Any]:
-        """The parameters that are words and numbers, for refusals."""
-        return vars(self.params)
-
 
 def read_case(folder: Path) -> GivenCase:
     """The case that lies in a folder."""

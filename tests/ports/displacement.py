@@ -114,9 +114,9 @@ class Port:
         self.device = device or gl.create_device()
         self._programs: dict[str, moderngl.Program] = {}
 
-    def render(self, scene: Any, params: Any, *, stages: bool = True) -> gl.Frame:
-        """One frame, read back."""
-        prepared = self.prepare(scene, params, stages=stages)
+    def render(self, scene: Any, params: Any, **options: Any) -> gl.Frame:
+        """One frame, read back. The options are those of `prepare`."""
+        prepared = self.prepare(scene, params, **options)
         try:
             prepared.draw()
             return prepared.read()

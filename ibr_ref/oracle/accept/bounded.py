@@ -39,7 +39,12 @@ class Bounded:
         return Bounded(-self.value, self.error, self.device)
 
     def __mul__(self, other: Bounded) -> Bounded:
-        error = self.size * other.error + self.error * np.abs(other.value)
+        """Without a bound where either has none, even times 0."""
+        with np.errstate(invalid="ignore"):
+            error = np.asarray(self.size * other.error + self.error * np.abs(other.value))
+        unbounded = np.isnan(error)
+        if unbounded.any():
+            error = np.where(unbounded, np.inf, error)
         return self._rounded(self.value * other.value, error, self.device.operation)
 
     def __truediv__(self, other: Bounded) -> Bounded:

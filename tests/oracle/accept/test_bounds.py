@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ibr_ref.oracle.accept.bounded import Bounded, dot, lerp, power, unit, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, lerp, power, unit, uploaded
 from ibr_ref.oracle.accept.coverage import covered, snapped
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.accept.winners import winners
@@ -165,3 +165,12 @@ def test_winners_by_drawing_depths() -> None:
     assert found.sure.any()
     assert (~found.possible).any()
     assert found.empty.any()
+
+
+def test_what_has_no_bound_has_none_in_a_product_either() -> None:
+    """0 times a number that may be anything is not taken for a number that is nothing."""
+    device = PROFILES["gl"]
+    anything = exact([1.0], device) / Bounded(np.array([0.5]), np.array([1.0]), device)
+    for found in (exact([0.0], device) * anything, anything * exact([0.0], device)):
+        assert found.error.tolist() == [np.inf]
+        assert found.allows([3.0]).all()

@@ -39,7 +39,7 @@ def parameters(case: Case) -> list[Parameter]:
 
 
 def _parameter(name: str, value: float, moved: Callable[[float], Case], size: float | None = None) -> Parameter:
-    size = max(abs(value), 1e-2) if size is None else size
+    size = max(abs(value), 1e-2) if size is None else size  # a step for what is 0 by chance
     return Parameter(name=name, value=float(value), step=STEP * size, moved=moved)
 
 

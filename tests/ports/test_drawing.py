@@ -1,0 +1,86 @@
+"""What the ports do besides being right: they know nothing of the package, refuse what they cannot draw, can be timed."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ibr_ref import oracle
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+PORTS = ("__main__", "case_folder", "displacement", "gl", "shadow_maps", "shadows", "splatting")
+
+
+@pytest.mark.parametrize("name", PORTS)
+def test_nothing_of_the_package_is_imported(name: str) -> None:
+    """A port in another language has the folder alone."""
+    for node in ast.walk(ast.parse((HERE / f"{name}.py").read_text("utf-8"))):
+        modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        modules += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        assert not any(module.partition(".")[0] == "ibr_ref" for module in modules), modules
+        own = [module for module in modules if module.startswith("tests")]
+        assert all(module == "tests.ports" or module.split(".")[-1] in PORTS for module in own), own
+
+
+def drawn(case: oracle.Case, device: Any, **options: Any) -> Any:
+    from tests.ports.__main__ import draw
+    from tests.ports.described import described
+
+    return draw(described(case.method, case.scene, case.params, **case.inputs), device, **options)
+
+
+def test_the_timed_displacement_is_the_same(device: Any) -> None:
+    """Without stages, into bytes: of the same decisions."""
+    case = oracle.build("displacement-slope")
+    staged, timed, packed = (drawn(case, device, **options) for options in ({}, {"stages": False}, {"packed": True}))
+    assert timed.stages == {}
+    for other in (timed, packed):
+        different = (abs(staged.color - other.color) > 1.0 / 255.0).any(axis=-1)
+        assert different.mean() < 0.002
+
+
+@pytest.mark.parametrize("name", ["shadows-depths", "shadows-soft", "shadows-thin"])
+def test_the_timed_shadows_are_nearly_the_same(name: str, device: Any) -> None:
+    """The sampler's own filter, bytes between the passes: a mix of two rounded twice, 8 bits of colour and light."""
+    staged, timed = (drawn(oracle.build(name), device, stages=stages) for stages in (True, False))
+    np.testing.assert_array_equal(staged.depth, timed.depth)
+    assert abs(staged.color - timed.color).max() < 0.03
+    assert abs(staged.color - timed.color).mean() < 0.003
+
+
+def test_what_is_not_ported_is_refused_with_its_feature(device: Any) -> None:
+    for name, changes, words in [
+        ("displacement-box", {"method": "relief"}, "method = 'relief'"),
+        ("shadows-direct", {"method": "grid"}, "method = 'grid'"),
+    ]:
+        case = oracle.build(name)
+        with pytest.raises(ValueError, match=words):
+            drawn(replace(case, params=replace(case.params, **changes)), device)
+
+
+def test_from_the_command_line(device: Any, tmp_path: Path) -> None:
+    """Two folders; one line and no folder for what is not ported."""
+    box = oracle.build("displacement-box")
+    oracle.export(box, tmp_path / "box")
+    oracle.export(replace(box, name="relief", params=replace(box.params, method="relief")), tmp_path / "relief")
+
+    def run(case: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "tests.ports", str(tmp_path / case), str(tmp_path / "port" / case)]
+        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+    assert run("box").returncode == 0
+    names = {path.name for path in (tmp_path / "port" / "box").iterdir()}
+    assert {"color.npy", "depth.npy", "march.hit_index.npy", "vertex.clip.npy", "port.json"} <= names
+    assert np.load(tmp_path / "port" / "box" / "march.hit_index.npy").dtype == np.int32
+    refused = run("relief")
+    assert refused.returncode == 1
+    assert refused.stderr.strip() == "relief is not ported: method = 'relief': the port allows protruded"
+    assert not (tmp_path / "port" / "relief").exists()
