@@ -233,7 +233,12 @@ def filtered() -> Case:
         ],
     )
     return _case(
-        "filtered", "adversarial", about, scene, _params(method="direct", content="depth", pcf=True, bias=2e-3)
+        "filtered",
+        "adversarial",
+        about,
+        scene,
+        _params(method="direct", content="depth", pcf=True, bias=2e-3),
+        profile="vulkan",
     )
 
 
