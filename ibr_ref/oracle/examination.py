@@ -32,6 +32,11 @@ class Examination:
         """Of a stage, or None."""
         return next((j for j in self.judgements if j.stage == stage), None)
 
+    @property
+    def first_wrong(self) -> Judgement | None:
+        """In the pipeline's order."""
+        return _first_wrong(self.judgements)
+
 
 def judge(case: Case, handed: Handed, device: Device) -> list[Judgement]:
     """All that one device allows: the stages in order, each on the port's own inputs, then "image" if a colour is there.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from ibr_ref.oracle.verdict import Outcome, StageVerdict, Verdict, Witness
 
 
@@ -9,7 +11,8 @@ def words(verdict: Verdict) -> str:
     """Some ten lines: what, where first, how many, why one of them is wrong, what would explain it."""
     lines = [_headline(verdict)]
     lines += [f"  {reason}" for reason in verdict.reasons]
-    lines += [_stage_line(stage) for stage in verdict.stages]
+    parts = Counter(stage.stage for stage in verdict.stages)
+    lines += [_stage_line(stage, alone=parts[stage.stage] == 1) for stage in verdict.stages]
     if verdict.witness is not None:
         lines += _witness_lines(verdict.witness)
     for convention in verdict.conventions:
@@ -39,19 +42,21 @@ def _headline(verdict: Verdict) -> str:
     return f"{head}, first wrong in stage {verdict.first_wrong_stage}, judged by {verdict.profile} ({how})."
 
 
-def _stage_line(stage: StageVerdict) -> str:
+def _stage_line(stage: StageVerdict, *, alone: bool) -> str:
+    """alone: all of the stage is judged at once; else the arrays say which part of it this is."""
+    name = stage.stage if alone else f"{stage.stage} ({', '.join(stage.arrays)})"
     own = f", fed with the port's {', '.join(stage.replayed)}" if stage.replayed else ""
     if stage.right:
-        return f"  {stage.stage}: right ({stage.elements:,} {_plural(stage.element)}{own})."
+        return f"  {name}: right ({stage.elements:,} {_plural(stage.element)}{own})."
     box = stage.box
     where = "" if box is None else f", from {list(box.first)} to {list(box.last)}"
     blamed = ", ".join(f"{name} in {count:,}" for name, count in stage.blamed.items())
     share = 100 * stage.wrong / stage.elements
-    return f"  {stage.stage}: {stage.wrong:,} {_plural(stage.element)} wrong ({share:.3g} %){where}: {blamed}{own}."
+    return f"  {name}: {stage.wrong:,} {_plural(stage.element)} wrong ({share:.3g} %){where}: {blamed}{own}."
 
 
 def _plural(element: str) -> str:
-    return "vertices" if element == "vertex" else f"{element}s"
+    return {"vertex": "vertices", "axis": "axes"}.get(element, f"{element}s")
 
 
 def _witness_lines(witness: Witness) -> list[str]:

@@ -31,7 +31,7 @@ def write(examination: Examination, path: str | PathLike[str]) -> None:
 def page(examination: Examination) -> str:
     """The page as text."""
     verdict = examination.verdict
-    first = examination.judgement(verdict.first_wrong_stage or "")
+    first = examination.first_wrong
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     pictures = layers(examination)
     height, width = examination.case.frame.color.shape[:2]

@@ -1,0 +1,49 @@
+"""A stage that is judged in parts: words and the report say which part."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ibr_ref.oracle.examination import Examination, examine
+from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.verdict import Outcome, StageVerdict, Verdict
+from tests.oracle.plain_referee import box_case
+
+
+def part(array: str, element: str, elements: int, wrong: int = 0) -> StageVerdict:
+    return StageVerdict(
+        stage="warp", element=element, arrays=(array,), replayed=(), elements=elements, wrong=wrong, undecided=0,
+        box=None, blamed={array: wrong} if wrong else {}, median_width=None,
+    )  # fmt: skip
+
+
+def test_parts_of_a_stage_are_named_by_their_arrays() -> None:
+    stages = (part("warp.cell", "axis", 2), part("warp.rows", "texel", 4608, wrong=7))
+    verdict = Verdict(outcome=Outcome.FAIL, case="a", method="shadows", profile="gl", stages=stages)
+    assert "  warp (warp.cell): right (2 axes).\n" in verdict.words()
+    assert "  warp (warp.rows): 7 texels wrong (0.152 %): warp.rows in 7.\n" in f"{verdict.words()}\n"
+    alone = verdict.model_copy(update={"stages": stages[:1]})
+    assert "  warp: right (2 axes)." in alone.words()
+
+
+def test_the_first_wrong_part_is_shown() -> None:
+    """Not the first part of the stage that has one."""
+    case = box_case(8, 6)
+    judgements = []
+    for array, wrong in (("warp.cell", False), ("warp.rows", True)):
+        size = np.zeros((6, 8))
+        judgements.append(
+            Judgement(
+                stage="warp",
+                element="texel",
+                arrays=(array,),
+                wrong=size + wrong > 0.0,
+                undecided=size > 0.0,
+                width=size,
+                blame=np.zeros((6, 8), np.int8),
+            )
+        )
+    verdict = examine(case, {}).verdict
+    examination = Examination(case=case, handed={}, judgements=judgements, verdict=verdict)
+    assert examination.first_wrong is judgements[1]
+    assert Examination(case=case, handed={}, judgements=judgements[:1], verdict=verdict).first_wrong is None
