@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from statistics import median
 from typing import NamedTuple
 
 from ibr_ref import jit, splatting
@@ -65,8 +66,8 @@ def timed(images: str, scene: Scene, fit: Params, repeat: int, within: Within) -
     rows, compared = [], systems(lit, fit)
     for done, system in enumerate(compared):
         within(f"{images}: {system.name}", done, len(compared))
-        best, median = best_and_median(lambda: splatting.render(system.scene, system.params, stages=False), repeat)  # noqa: B023
-        rows.append(Timed(images, points, system, best, median))
+        best, middle = best_and_median(lambda: splatting.render(system.scene, system.params, stages=False), repeat)  # noqa: B023
+        rows.append(Timed(images, points, system, best, middle))
     return rows
 
 
@@ -122,8 +123,8 @@ def _claims(rows: Sequence[Timed]) -> tuple[Claim, ...]:
         Claim(
             claim="Rendering is considerably faster than in software.",
             published="38 to 40 times",
-            measured=f"{_span(software)} times",
-            holds=min(software) >= 2.0,
+            measured=f"{_span(software)} times, {median(software):.1f} in the middle",
+            holds=median(software) >= 2.0,
             why="Both run on the CPU here: what is left is threads, lanes, and that only points which are seen are lit. The "
             "paper's factor is that of its GPU.",
         ),
