@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ibr_ref import models
-from ibr_ref.cli.reproduce.displacement.measure import overflow, right_texels
+from ibr_ref.cli.reproduce.displacement.measure import EXACT, overflow, right_texels
 from ibr_ref.cli.reproduce.displacement.scenes import SKY, looking_at
 from ibr_ref.cli.reproduce.displacement.sheets import base, flat_walls, write_sheet
 from ibr_ref.cli.reproduce.findings import Claim, Found, Table, Within
@@ -39,7 +39,7 @@ def figure_15(folder: Path, within: Within, size: tuple[int, int] = SIZE) -> Fou
         published="texture mapping shows roofs alone; relief mapping sinks the ground and leaves gaps at the border; "
         "protruded mapping is cut off there until the faces are added; facades make the walls; at two scales.",
     )  # fmt: skip
-    exact = render(plain, Params(method="exact"))
+    exact = render(plain, EXACT)
     fine = render(plain, replace(PARAMS, linear_steps=800))
     shares = [overflow(plain, exact, frame) or 0.0 for frame in (c, d, fine)]
     claim = Claim(
@@ -84,7 +84,7 @@ def _low_eyes(size: tuple[int, int]) -> tuple[Table, Claim]:
     rows = []
     for height in (1.5, 0.8, 0.5, 0.3, 0.1):
         scene = looking_at(models.city(), (0.0, -2.6, height), target=(0.1, 0.0, 0.15), size=size, fov=60.0)
-        truth = render(scene, Params(method="exact", interval="volume"))
+        truth = render(scene, replace(EXACT, interval="volume"))
         among = truth.stages["march.hit_index"] >= 0
         paper, volume = (render(scene, Params(linear_steps=100, interval=interval)) for interval in ("paper", "volume"))
         rows.append((height / 0.5, *(right_texels(scene, truth, frame, among) for frame in (paper, volume))))

@@ -23,6 +23,9 @@ TEXELS = 2.0
 SMEARED = 0.25
 """Texels from a wall's pixel to the one below it, under which they count as the same."""
 
+EXACT = Params(method="exact", linear_steps=800)
+"""The first intersection; its walls are those that are steep within a short step."""
+
 
 @dataclass(frozen=True)
 class Truths:
@@ -34,7 +37,7 @@ class Truths:
     @classmethod
     def of(cls, scene: Scene) -> Truths:
         """By `exact`, and by the maximum mipmap, whose hits the tests hold against rational numbers."""
-        return cls(render(scene, Params(method="exact")), render(scene, Params(method="maximum_mipmap")))
+        return cls(render(scene, EXACT), render(scene, Params(method="maximum_mipmap")))
 
     def of_system(self, system: System) -> Frame:
         """What the system would show if its search were perfect."""

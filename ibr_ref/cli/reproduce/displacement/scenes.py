@@ -9,6 +9,7 @@ import numpy as np
 
 from ibr_ref import models
 from ibr_ref.displacement import Scene
+from ibr_ref.models.box import BLUE, YELLOW
 from ibr_ref.scene import BasePolygon, Camera, Light
 
 WHITE = (1.0, 1.0, 1.0)
@@ -17,7 +18,7 @@ LIGHT = Light(direction=(0.5, -0.8, 1.0))
 
 
 def spikes() -> BasePolygon:
-    """196 columns of 2 x 2 texels, half to nearly all of the volume high, on the box's ground: narrow and tall."""
+    """196 columns of 2 x 2 texels, half to nearly all of the volume high, in the box's colours: narrow and tall."""
     random = np.random.RandomState(0)
     heights = np.zeros((256, 256))
     for row in range(20, 240, 16):
@@ -26,8 +27,7 @@ def spikes() -> BasePolygon:
             heights[y : y + 2, x : x + 2] = random.uniform(0.5, 0.95)
     raised = heights > 0
     raised |= np.roll(raised, 1, 0) | np.roll(raised, 1, 1)
-    ground = np.asarray(models.box().color_map)[128:129, 128:129]
-    colors = np.where(raised[..., None], (0.2, 0.36, 0.77), np.broadcast_to(ground, (256, 256, 3)))
+    colors = np.where(raised[..., None], BLUE / 255.0, YELLOW / 255.0)
     return replace(models.box(), height_map=heights, color_map=colors, facade_map=None)
 
 

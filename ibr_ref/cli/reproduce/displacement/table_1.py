@@ -43,7 +43,7 @@ def run(folder: Path, within: Within, size: tuple[int, int] = (480, 360)) -> Fou
             median, most = (None, None) if flat else distances(scene, truth, frame)
             cells = (hits[name, system.name], median, most, fetches(system, frame))
             rows.append((system.name, system.tracer, *cells))
-            pictures.append((system.name, frame.color))
+            pictures.append((system.name.split(",")[0] if system.marks is None else system.name, frame.color))
         columns = ("system", "ray tracer, in the paper's words", "hits", "distance, median", "95 %", "fetches")
         tables.append(Table(title=f"Table 1: {name}", columns=columns, rows=tuple(rows), how=HOW))
         write_image(folder / f"{name}.png", contact_sheet(pictures, 4))

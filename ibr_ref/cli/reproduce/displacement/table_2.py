@@ -73,7 +73,7 @@ def _claims(rows: dict[tuple[str, str], Row]) -> tuple[Claim, ...]:
             measured=f"the box's ground drifts by {ours['drift']:.2g} pixels against {min(sunk):.1f} to {max(sunk):.1f}; "
             f"the outline of what is raised overlaps the exact one by {ours['outline']:.3f} against {relief['outline']:.3f}",
             holds=ours["drift"] < 0.01 < min(sunk),
-            why=f"Welsh's approximation, marked x, leaves most of the ground where it is ({rows['box', 'welsh']['drift']:.1f} "
+            why=f"Welsh's approximation, marked x, leaves most of the ground ({rows['box', 'welsh']['drift']:.1f} "
             "pixels on average): its offset is 0 where the height is.",
         ),
         Claim(
@@ -82,7 +82,7 @@ def _claims(rows: dict[tuple[str, str], Row]) -> tuple[Claim, ...]:
             measured=f"smeared pixels on the box's walls {ours['smeared']:.0%} against {relief['smeared']:.0%}, "
             f"in the city {city['smeared']:.0%} against {rows['city', 'relief']['smeared']:.0%}",
             holds=ours["smeared"] < 0.5 * relief["smeared"],
-            why="What is left is the walls' foot, which rises over the ground by less than the threshold.",
+            why="What is left is mostly the walls' foot, which rises over the ground by less than the threshold.",
         ),
         Claim(
             claim="McGuire's LOD bias has potential for steep displacement (table 2).",
@@ -90,8 +90,8 @@ def _claims(rows: dict[tuple[str, str], Row]) -> tuple[Claim, ...]:
             measured=f"smeared pixels {steep['smeared']:.0%}, the right texel on {steep['right']:.0%} of the walls' pixels; "
             f"relief mapping {relief['smeared']:.0%} and {relief['right']:.0%}",
             holds=steep["smeared"] < 0.8 * relief["smeared"],
-            why="The bias makes walls thicker, so that they pass more texels: those of the ground and the roof beside them. In the "
-            f"city {rows['city', 'mcguire']['right']:.0%} of the walls' pixels show the right one.",
+            why="The bias makes walls thicker, so that they pass more texels: those of ground and roof beside them. "
+            f"In the city {rows['city', 'mcguire']['right']:.0%} of the walls' pixels show the right one.",
         ),
         Claim(
             claim="Silhouette: no earlier system shows what overflows the polygon's outline (table 2).",
