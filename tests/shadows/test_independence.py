@@ -45,7 +45,8 @@ def test_a_light_on_the_caster_is_found_wherever_both_are(far: float) -> None:
     moved = np.array([far, 0.0, 0.0])
     caster = Mesh(vertices=np.asarray(box(0.4).vertices) + moved, triangles=box(0.4).triangles)
     for height, wrong in ((0.4, True), (0.0, True), (0.9, False)):
-        lamp = light(position=moved + (0.2, -0.1, height), target=moved + (0.2, -0.1, -1.0))
+        at = moved + np.array([0.2, -0.1, height])
+        lamp = light(position=at, target=at - (0.0, 0.0, 2.0))
         seen = scene(caster=caster, light=lamp)
         if wrong:
             with pytest.raises(ValueError, match=r"^light\.position: "):

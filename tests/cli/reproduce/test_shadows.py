@@ -81,9 +81,9 @@ def test_memory_is_that_of_the_arrays(tmp_path: Path) -> None:
 def test_cut_triangles_are_the_same_surface() -> None:
     cut = times._cut(box(), 2)
     corners = np.asarray(cut.vertices)[np.asarray(cut.triangles)]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    twice = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     assert len(corners) == 16 * 12
-    assert np.allclose(area, 0.8**2 / 32)
+    assert np.allclose(twice, 0.8**2 / 16)
     assert np.abs(corners).max() == 0.4
 
 
