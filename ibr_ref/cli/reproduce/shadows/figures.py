@@ -22,6 +22,8 @@ OFFSET = (0.23, -0.31)
 PLACES = 5
 """Of figure 4, on either axis."""
 SAMPLES = (1, 5, 9)
+PLACEMENT = "best"
+"""Of the control points."""
 
 
 @cache
@@ -29,7 +31,7 @@ def _warping(name: str) -> tuple[Scene, Params, Maps]:
     """An object on its stage; maps for nine samples, and so for fewer."""
     scene = models.shadow_stage(objects()[name], offset=OFFSET)
     params = Params(light_samples=9)
-    return scene, params, shadows.prepare(scene, params, controls="best")
+    return scene, params, shadows.prepare(scene, params, controls=PLACEMENT)
 
 
 def _names() -> tuple[str, str]:
