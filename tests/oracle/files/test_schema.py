@@ -14,10 +14,10 @@ import ibr_ref
 from ibr_ref.displacement import inputs as displacement_inputs
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.schema import ADAPTER, describe, schema, schema_text
+from ibr_ref.oracle.schema.base import values
 from ibr_ref.oracle.schema.displacement import DisplacementParams
 from ibr_ref.oracle.schema.shadows import ShadowsParams
 from ibr_ref.oracle.schema.splatting import SplattingParams
-from ibr_ref.oracle.schema.base import values
 from ibr_ref.oracle.schema.stages import CONTRACTS
 from ibr_ref.shadows import inputs as shadows_inputs
 from ibr_ref.splatting import inputs as splatting_inputs
