@@ -245,7 +245,7 @@ def filtered() -> Case:
 def coarse() -> Case:
     """Comparisons of bytes."""
     about = "Depths rendered anew and compared in 8 bits: many are equal."
-    params = _params(method="direct", content="depth", quantize=8, bias=6e-3)
+    params = _params(method="direct", content="depth", quantize=8, bias=3e-3)
     return _case("coarse", "adversarial", about, _scene(), params, profile="gl")
 
 
