@@ -17,8 +17,8 @@ from ibr_ref.oracle.verdict import Outcome
 def check(case: Case, submission: Submission, *, profile: str | None = None) -> Examination:
     """Judge a submission by the profile that is given, or declared by the port, or the tightest that explains it.
 
-    A wrong image that is the image of another built-in case makes the verdict INCONCLUSIVE: the port did not draw this
-    one. Raises ValueError for an unknown profile.
+    A wrong image that is the image of another built-in case of the method makes the verdict INCONCLUSIVE: the port did not
+    draw this one. Raises ValueError for an unknown profile.
     """
     problems = [str(problem) for problem in submission.problems]
     examination = examine(case, submission.handed, profile=profile or submission.profile, problems=problems)
@@ -33,9 +33,9 @@ def check(case: Case, submission: Submission, *, profile: str | None = None) -> 
 
 
 def _others(case: Case) -> Iterator[tuple[str, NDArray[np.float64]]]:
-    """Pictures of the other built-in cases of that size."""
+    """Pictures of the method's other built-in cases of that size; of other methods all kernels would have to be compiled."""
     size = case.scene.camera.width, case.scene.camera.height
-    for name in names():
+    for name in names(case.method):
         if name == case.name:
             continue
         other = build(name)

@@ -189,8 +189,14 @@ def _comparison(search: Search, step: str, index: int, said: bool | None) -> Tra
 
 def _handed(port: Port, pixel: int, names: Sequence[str]) -> str:
     """The port's own numbers, in their order."""
-    values = (np.atleast_1d(port.floats(name)[pixel]) for name in names if name in port.handed)
-    return ", ".join(_vector(v) if len(v) > 1 else _number(float(v[0])) for v in values)
+    shown = []
+    for name in (name for name in names if name in port.handed):
+        value = np.atleast_1d(port.floats(name)[pixel])
+        if np.asarray(port.handed[name]).dtype == np.bool_:
+            shown.append(str(bool(value[0])))
+        else:
+            shown.append(_vector(value) if len(value) > 1 else _number(float(value[0])))
+    return ", ".join(shown)
 
 
 def _shade(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
