@@ -25,8 +25,8 @@ TWINS: dict[str, Any] = {
 }
 """Modules with `render`; the shadows' twin is given the controls that the golden scenes have."""
 
-WITHOUT_TWIN = ("displacement/exact", "shadows/wavelets")
-"""The twins have no exact search, and no wavelets."""
+WITHOUT_TWIN = ("displacement/exact", "shadows/wavelets", "splatting/ellipses")
+"""The twins have no exact search, no wavelets, and no ellipses: these are compared with a plain loop of their own."""
 
 
 @pytest.mark.parametrize("name", golden.SCENES)

@@ -21,6 +21,8 @@ Examples:
 
     ibr-ref render displacement --height h.png --invert-height --color c.png --normal n.png --height-scale 0.1 --steps 50
     --out image.png --stages dump.npz
+
+    ibr-ref render displacement --height h.png --color c.png --method tatarchuk --max-steps 80 --out occlusion.png
 """
 
 
@@ -31,6 +33,13 @@ class Method(StrEnum):
     exact = "exact"
     relief = "relief"
     texture = "texture"
+    welsh = "welsh"
+    mcguire = "mcguire"
+    donnelly = "donnelly"
+    tatarchuk = "tatarchuk"
+    cone = "cone"
+    relaxed_cone = "relaxed_cone"
+    maximum_mipmap = "maximum_mipmap"
 
 
 class Interval(StrEnum):
@@ -78,7 +87,13 @@ def command(
     shadow_steps: Annotated[int, typer.Option(help="Samples towards the light; 0: no self-shadow.")] = 0,
     interval: Annotated[Interval, typer.Option(help="Stretch of the view ray that is searched.")] = Interval.paper,
     faces: Annotated[FaceSet, typer.Option(help="Faces of the volume that are drawn.")] = FaceSet.auxiliary,
-    method: Annotated[Method, typer.Option(help="Search for the hit.")] = Method.protruded,
+    method: Annotated[
+        Method, typer.Option(help="Search for the hit; from relief on, systems to compare with: shapes sink, not rise.")
+    ] = Method.protruded,
+    lod_bias: Annotated[float, typer.Option(help="mcguire: level of the mip chain that heights come from.")] = 1.0,
+    min_steps: Annotated[int, typer.Option(help="tatarchuk: steps where the view is straight down.")] = 8,
+    max_steps: Annotated[int, typer.Option(help="tatarchuk: steps where the view is horizontal.")] = 50,
+    distance_layers: Annotated[int, typer.Option(help="donnelly: layers of the distance texture.")] = 32,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
@@ -112,6 +127,10 @@ def command(
             interval=interval.value,
             faces=faces.value,
             method=method.value,
+            lod_bias=lod_bias,
+            min_steps=min_steps,
+            max_steps=max_steps,
+            distance_layers=distance_layers,
         )
         step("rendering")
         frame = displacement.render(scene, params, stages=stages is not None)

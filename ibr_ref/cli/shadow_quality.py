@@ -53,3 +53,15 @@ def report_lines(scene: Scene, params: Params, frame: Frame, maps: Maps | None) 
         f"shadow in the picture: IoU {iou(ours, theirs):.3f}, mean difference {soft_difference(ours, theirs):.4f}"
     )
     return lines
+
+
+def soft_report_line(scene: Scene, frame: Frame) -> str:
+    """A frame of `render_soft` with stages beside the one by rays."""
+    from ibr_ref import shadows
+
+    ours = frame.stages["soft.shadow"]
+    theirs = shadows.render_soft(scene, shadows.SoftParams(method="traced")).stages["soft.shadow"]
+    return (
+        f"shadow in the picture against rays: IoU {iou(ours, theirs):.3f}, "
+        f"mean difference {soft_difference(ours, theirs):.4f}"
+    )

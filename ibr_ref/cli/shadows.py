@@ -13,8 +13,9 @@ from ibr_ref.cli.progress import progress
 
 if TYPE_CHECKING:
     from ibr_ref.cli.progress import Step
+    from ibr_ref.io import Frame
     from ibr_ref.scene import Mesh
-    from ibr_ref.shadows import Maps, Params, Scene
+    from ibr_ref.shadows import Maps, Params, Scene, SoftParams
 
 EXAMPLES = """
 Examples:
@@ -23,16 +24,26 @@ Examples:
 
     ibr-ref render shadows --caster cow.obj --samples 9 --offset 0.3,-0.2 --out cow.png
 
+    ibr-ref render shadows --caster cow.obj --method pcss --light-size 0.3 --report --out cow.png
+
     ibr-ref render shadows --caster cow.obj --controls best --maps cow.npz --samples 9 --report --out cow.png
 """
 
 
 class Method(StrEnum):
-    """Where the shadow map comes from."""
+    """Where the shadow map comes from; or another way to a soft shadow than samples of the light."""
 
     warp = "warp"
     direct = "direct"
     grid = "grid"
+    traced = "traced"
+    convolution = "convolution"
+    pcss = "pcss"
+
+    @property
+    def soft(self) -> bool:
+        """Drawn by `render_soft`."""
+        return self in (Method.traced, Method.convolution, Method.pcss)
 
 
 class Policy(StrEnum):
@@ -80,9 +91,13 @@ def command(
     light_size: Annotated[
         float, typer.Option(help="Half the side of the light; the mesh's largest extent is 1.")
     ] = 0.12,
-    method: Annotated[Method, typer.Option(help="Maps warped, rendered for every sample, or a grid of them.")] = (
-        Method.warp
-    ),
+    method: Annotated[
+        Method,
+        typer.Option(
+            help="Maps warped, rendered for every sample, or a grid of them; or the whole light: rays, Soler & Sillion's "
+            "convolution, percentage-closer soft shadows."
+        ),
+    ] = Method.warp,
     map_size: Annotated[int, typer.Option(help="Texels a side of a shadow map.")] = 512,
     map_samples: Annotated[int, typer.Option(help="k: a texel is the coverage of k x k samples.")] = 1,
     rows: Annotated[int, typer.Option(help="Control points downwards.")] = 15,
@@ -97,7 +112,10 @@ def command(
     target: Annotated[str, typer.Option(metavar="X,Y,Z", help="Point looked at.")] = "0.15,0.35,-0.1",
     size: Annotated[str, typer.Option(metavar="WxH", help="Pixels of the picture.")] = "640x480",
     report: Annotated[
-        bool, typer.Option("--report", help="Print how far the shadow is from the rendered one, and the maps' memory.")
+        bool,
+        typer.Option(
+            "--report", help="Print how far the shadow is from the rendered or traced one, and the maps' memory."
+        ),
     ] = False,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
@@ -115,7 +133,7 @@ def command(
             if path is not None:
                 io.check_writable(path)
         scene = models.shadow_stage(
-            _mesh(caster, up),
+            read_caster(caster, up),
             offset=where,
             light_size=light_size,
             eye=eye_,
@@ -123,31 +141,52 @@ def command(
             width=width,
             height=height,
         )
-        params = shadows.Params(
-            map_size=map_size,
-            map_samples=map_samples,
-            rows=rows,
-            columns=columns,
-            policy=policy.value,
-            content=content.value,
-            light_samples=samples,
-            method=method.value,
-        )
-        prepared = _prepared(scene, params, controls, maps, step) if method is Method.warp else None
-        step("rendering")
-        frame = shadows.render(scene, params, maps=prepared, stages=report or stages is not None)
+        if method.soft:
+            step("rendering")
+            soft = shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples)
+            frame, lines = _soft_frame(scene, soft, stages is not None, report)
+        else:
+            params = shadows.Params(
+                map_size=map_size,
+                map_samples=map_samples,
+                rows=rows,
+                columns=columns,
+                policy=policy.value,
+                content=content.value,
+                light_samples=samples,
+                method=method.value,
+            )
+            prepared = _prepared(scene, params, controls, maps, step) if method is Method.warp else None
+            step("rendering")
+            frame, lines = _frame(scene, params, prepared, stages is not None, report)
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
         frame.save(out)
-    if report:
-        from ibr_ref.cli.shadow_quality import report_lines
-
-        typer.echo("\n".join(report_lines(scene, params, frame, prepared)))
+    for line in lines:
+        typer.echo(line)
 
 
-def _mesh(path: Path | None, up: Up | None) -> Mesh:
-    """The caster with z up."""
+def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
+    """The frame, and what is reported of it."""
+    from ibr_ref import shadows
+    from ibr_ref.cli.shadow_quality import report_lines
+
+    frame = shadows.render(scene, params, maps=maps, stages=keep or report)
+    return frame, report_lines(scene, params, frame, maps) if report else []
+
+
+def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> tuple[Frame, list[str]]:
+    """The frame, and what is reported of it."""
+    from ibr_ref import shadows
+    from ibr_ref.cli.shadow_quality import soft_report_line
+
+    frame = shadows.render_soft(scene, params, stages=keep or report)
+    return frame, [soft_report_line(scene, frame)] if report else []
+
+
+def read_caster(path: Path | None, up: Up | None) -> Mesh:
+    """The caster with z up; without a path the horse."""
     import numpy as np
 
     from ibr_ref import io, models

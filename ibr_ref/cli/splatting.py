@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -26,6 +26,8 @@ Examples:
 
     ibr-ref render splatting --mesh cow.obj --count 9 --light=-1,-1,2 --out cow.png
 
+    ibr-ref render splatting --mesh cow.obj --shape ellipse --out smooth.png
+
     ibr-ref render splatting --simple-texture set.xmt --law 1,0,0.002,0.7 --eye 3,-2,1 --target 0,0,0 --out image.png
 """
 
@@ -35,6 +37,14 @@ class Shape(StrEnum):
 
     square = "square"
     disc = "disc"
+    ellipse = "ellipse"
+
+
+class Method(StrEnum):
+    """How the points are drawn."""
+
+    shader = "shader"
+    software = "software"
 
 
 def command(
@@ -69,7 +79,23 @@ def command(
     ] = False,
     min_width: Annotated[float, typer.Option(help="Least width of a splat, pixels.")] = 1.0,
     max_width: Annotated[float, typer.Option(help="Largest width of a splat, pixels.")] = 64.0,
-    shape: Annotated[Shape, typer.Option(help="Shape of a splat.")] = Shape.square,
+    shape: Annotated[
+        Shape,
+        typer.Option(help="Shape of a splat; ellipse: elliptical weighted averages (Zwicker et al. 2001), no law."),
+    ] = Shape.square,
+    footprint: Annotated[
+        float, typer.Option(help="--shape ellipse: deviation of a point's Gaussian, reference pixels.")
+    ] = 0.5,
+    low_pass: Annotated[
+        float, typer.Option(help="--shape ellipse: deviation of the filter, pixels of the picture.")
+    ] = 0.5,
+    cutoff: Annotated[float, typer.Option(help="--shape ellipse: where Gaussians end, deviations.")] = 2.0,
+    depth_tolerance: Annotated[
+        float, typer.Option(help="--shape ellipse: what is averaged with the nearest, share of the distance.")
+    ] = 0.01,
+    method: Annotated[
+        Method, typer.Option(help="software: the paper's comparison, a loop on one thread; the same picture.")
+    ] = Method.shader,
     light: Annotated[
         str | None, typer.Option(metavar="X,Y,Z", help="Relight, from this direction. Without: the stored colours.")
     ] = None,
@@ -107,7 +133,18 @@ def command(
             light=None if light is None else Light(direction=options.vector(light)),
             background=(1.0, 1.0, 1.0) if msr is None else (0.0, 0.0, 0.0),
         )
-        params = _params(scene, law, min_width, max_width, shape.value)
+        params = _params(
+            scene,
+            law,
+            min_width=min_width,
+            max_width=max_width,
+            shape=shape.value,
+            footprint=footprint,
+            low_pass=low_pass,
+            cutoff=cutoff,
+            depth_tolerance=depth_tolerance,
+            method=method.value,
+        )
         step("rendering")
         picture = splatting.render(scene, params, stages=report or stages is not None)
         step("writing")
@@ -120,23 +157,20 @@ def command(
         typer.echo("\n".join(report_lines(scene, params, picture, photograph)))
 
 
-def _params(scene: Scene, law: str | None, min_width: float, max_width: float, shape: str) -> Params:
+def _params(scene: Scene, law: str | None, **rest: Any) -> Params:
+    """The parameters, with the law that is given or fitted; ellipses have none."""
     from ibr_ref import splatting
 
-    if law is None:
-        fitted = splatting.fit_splat_law(scene.images, scene.camera, min_width=min_width, max_width=max_width)
-        alpha, beta, gamma, delta = fitted
+    plain = splatting.Params(**rest)  # what is wrong with these is said before the fit, which takes its time
+    if law is not None:
+        fitted = options.law(law)
+    elif plain.shape == "ellipse":
+        return plain
     else:
-        alpha, beta, gamma, delta = options.law(law)
-    return splatting.Params(
-        alpha=alpha,
-        beta=beta,
-        gamma=gamma,
-        delta=delta,
-        min_width=min_width,
-        max_width=max_width,
-        shape=shape,
-    )
+        widths = {name: rest[name] for name in ("min_width", "max_width")}
+        fitted = splatting.fit_splat_law(scene.images, scene.camera, **widths)
+    alpha, beta, gamma, delta = fitted
+    return splatting.Params(alpha=alpha, beta=beta, gamma=gamma, delta=delta, **rest)
 
 
 def _from_msr(

@@ -36,6 +36,15 @@ hit and shade.* NaN, height_before 0, steep False.
 | shade.facing_margin | (H, W) float64 | abs(n.l) |
 | resolve.margin | (H, W) float64 | distance in window depth to the nearest other kept fragment; inf if there is none |
 
+**Systems to compare with** (`method=`), all on the base face alone: `"texture"`; `"relief"` (Policarpo 2005); `"welsh"`,
+`"mcguire"`, `"donnelly"` and `"tatarchuk"` of the paper's table 1; and beyond the paper `"cone"` (Dummer 2006),
+`"relaxed_cone"` (Policarpo & Oliveira 2007) and `"maximum_mipmap"` (Tevs 2008, Drobot 2009). Each has a file with its source
+and its formulas. The last seven have one stage more, `march.fetches` (H, W) int32: the texture fetches of the search. They
+keep no steep walls; their `linear_index` and `hit_index` are the number of the step that the search ended with (of the
+maximum mipmap: of fetches). Margins are kept for comparisons with the map alone: none for the number of steps that depends
+on the view's angle, for steps by distances or cones, for the quadtree's nodes. Where the map ends at its border, whatever
+would be shown from beside it is discarded. `"welsh"` has the polygon's window depth.
+
 **Settled here**, where the paper and common practice leave it open:
 
 - Stops are strict, h < H. All tests lie on the lattice t = k/(N 2^M); the hit is the first lattice point known inside.
@@ -45,7 +54,7 @@ hit and shade.* NaN, height_before 0, steep False.
   walls, inf. Comparisons whose h is exactly 0 or 1 are left out of march.margin by value.
 - Gradients are central differences one texel apart, H(u + 1/W, v) - H(u - 1/W, v); a difference below 2^-16 counts as 0. On
   a steep hit with a facade its normal wins over the normal map's.
-- `method="relief"` and `"texture"` draw the base face alone, whatever `faces` says. Relief mapping compares d >= D, as its
+- All compared systems draw the base face alone, whatever `faces` says. Relief mapping compares d >= D, as its
   authors' shader does, and its hits lie at h = -d. `method="exact"` intersects the bilinear height field itself; its
   linear_index and hit_index are those of the first lattice points at or behind the hit, its margins stay infinite.
 - In `interval="volume"` the border of the map is a wall, but normals come from the height map alone: a border wall takes

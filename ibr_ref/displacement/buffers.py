@@ -68,6 +68,8 @@ class Settings(NamedTuple):
     steep_threshold: float
     shadow_steps: int
     shadow_bias: float
+    floor: float
+    """The solid lies in [floor, floor + 1]: -1 for what sinks below the polygon."""
     polygon_depth: bool
     """depth="polygon"."""
 

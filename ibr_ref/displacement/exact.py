@@ -17,7 +17,7 @@ _MOST_CELLS = 1 << 24  # a repeated, nearly empty plane seen at a grazing angle 
 
 
 @device
-def _upward_crossing(c, b, a, end):
+def upward_crossing(c, b, a, end):
     """Smallest s in [0, 1] at which a s^2 + b s + c, with c <= 0 and the value `end` at s = 1, becomes positive; else 2.
 
     Of the two roots only (-b + sqrt(D))/(2 a) has a positive slope; written so that nothing cancels.
@@ -34,7 +34,7 @@ def _upward_crossing(c, b, a, end):
 
 
 @device
-def _next_line(x, dx, cell):
+def next_line(x, dx, cell):
     """t at which x + t dx leaves the cell [cell, cell + 1]."""
     if dx > 0.0:
         return (cell + 1.0 - x) / dx
@@ -44,7 +44,7 @@ def _next_line(x, dx, cell):
 
 
 @device
-def _clip_unit(x, dx, t0, t1):
+def clip_unit(x, dx, t0, t1):
     """Narrow [t0, t1] to where x + t dx lies in [0, 1]."""
     if dx == 0.0:
         return (t0, t1) if 0.0 <= x <= 1.0 else (1.0, 0.0)
@@ -80,7 +80,7 @@ def intersect(repeat, texels, columns, rows, highest, u, v, h, du, dv, dh, t0, t
         row -= 1.0
     t = t0
     for _ in range(_MOST_CELLS):
-        next_x, next_y = _next_line(x, dx, column), _next_line(y, dy, row)
+        next_x, next_y = next_line(x, dx, column), next_line(y, dy, row)
         end = max(t, min(next_x, next_y, t1))
         middle = 0.5 * (t + end)
         # The quadratic through three points of the cell: exact, as a bilinear surface is one along a line.
@@ -88,7 +88,7 @@ def intersect(repeat, texels, columns, rows, highest, u, v, h, du, dv, dh, t0, t
         half = _above(repeat, texels, columns, rows, u + middle * du, v + middle * dv, h + middle * dh)
         value = _above(repeat, texels, columns, rows, u + end * du, v + end * dv, h + end * dh)
         curvature = 2.0 * (value - 2.0 * half + start)
-        s = _upward_crossing(start, value - start - curvature, curvature, value)
+        s = upward_crossing(start, value - start - curvature, curvature, value)
         if s <= 1.0:
             return t + s * (end - t)
         if not end < t1:
@@ -116,8 +116,8 @@ def exact_search(repeat, fragments, rays, count, texels, columns, rows, highest,
         u, v, h, du, dv, dh = rays.u[i], rays.v[i], rays.h[i], rays.du[i], rays.dv[i], rays.dh[i]
         t0, t1 = 0.0, 1.0
         if settings.bounded:
-            t0, t1 = _clip_unit(u, du, t0, t1)
-            t0, t1 = _clip_unit(v, dv, t0, t1)
+            t0, t1 = clip_unit(u, du, t0, t1)
+            t0, t1 = clip_unit(v, dv, t0, t1)
         t = intersect(repeat, texels, columns, rows, highest, u, v, h, du, dv, dh, t0, t1)
         if t < 1.0:  # at t = 1 it would hit the face itself, as a search that stops at k = K
             hits.linear_index[i] = np.int32(min(np.ceil(t * steps), steps))

@@ -87,6 +87,22 @@ def rasterize(triangles, faces, width, first_row, last_row, with_depth, fragment
 
 
 @device
+def _points_of_row(triangles, width, row, points):
+    for t in range(len(triangles.source)):
+        if triangles.rows[t, 0] <= row < triangles.rows[t, 1]:
+            edges = edges_in_row(triangles.x[t], triangles.y[t], row)
+            first, stop = columns_in_row(edges, width)
+            fill_varyings(edges, first, stop, triangles.varyings[t], triangles.w[t], points, row * width + first)
+
+
+@kernel
+def base_points(triangles, width, rows, points):
+    """Stage raster for a base face alone, whose triangles share no pixel: points (3, P), one a pixel."""
+    for row in prange(rows):
+        _points_of_row(triangles, width, row, points)
+
+
+@device
 def search(repeat, keep, fragments, count, constants, settings, maps, hits):
     """Stage march: the hits of all fragments, by the method's search."""
     texels, columns, rows = maps.height
@@ -120,6 +136,17 @@ def search(repeat, keep, fragments, count, constants, settings, maps, hits):
 
 
 @device
+def take(fragments, count, found, hits):
+    """Stage march where a search has been through all pixels before: its hits."""
+    for i in range(count):
+        pixel = fragments.pixel[i]
+        hits.linear_index[i], hits.hit_index[i] = found.linear_index[pixel], found.hit_index[pixel]
+        hits.u[i], hits.v[i], hits.h[i] = found.u[pixel], found.v[pixel], found.h[pixel]
+        hits.height_before[i] = found.height_before[pixel]
+        hits.margin[i], hits.domain_margin[i] = found.margin[pixel], found.domain_margin[pixel]
+
+
+@device
 def shade(repeat, keep, hits, count, constants, settings, maps, shades):
     """Stage shade: colours of all hits."""
     texels, columns, rows = maps.height
@@ -136,20 +163,24 @@ def shade(repeat, keep, hits, count, constants, settings, maps, shades):
     if has_facade:
         facades(hits, count, maps.facade.texels, maps.facade.columns, maps.facade.rows, constants, shades)
     if settings.shadow_steps > 0:
-        floor = -1.0 if settings.method == RELIEF else 0.0
-        self_shadow(repeat, keep, hits, count, texels, columns, rows, constants.light, floor, settings, shades)
+        self_shadow(repeat, keep, hits, count, texels, columns, rows, constants.light, settings, shades)
     light_hits(hits, count, constants, shades)
 
 
 @device
-def _draw_band(repeat, keep, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target):
+def _draw_band(
+    repeat, keep, found, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target
+):  # fmt: skip
     count = _count(triangles, width, first_row, last_row)
     if count == 0:
         return
     fragments, hits, shades = fragments_for(count), hits_for(count), shades_for(count)
     verdicts = np.empty(count, np.int8)
     rasterize(triangles, faces, width, first_row, last_row, settings.polygon_depth, fragments)
-    search(repeat, keep, fragments, count, constants, settings, maps, hits)
+    if found is None:
+        search(repeat, keep, fragments, count, constants, settings, maps, hits)
+    else:
+        take(fragments, count, found, hits)
     project_hits(fragments, count, constants, settings, hits)
     if settings.method == PROTRUDED or settings.method == EXACT:
         mark_steep(count, settings, hits)
@@ -169,6 +200,7 @@ def _draw_band(repeat, keep, triangles, faces, constants, settings, maps, patch_
 def draw(
     repeat,
     keep,
+    found,
     triangles,
     faces,
     constants,
@@ -187,7 +219,8 @@ def draw(
     """Draw one polygon into the target: patch_id 0 clears it first, band by band; others come over what is there.
 
     repeat: None (clamp) or True, the wrap mode of its maps. keep: None or True, all stage arrays are wanted, not the
-    picture alone. Both are types to the compiler: what they rule out is not even compiled. faces: the face number of
+    picture alone. found: None, or the hits of all pixels, by a search that has been (`compared`). All three are types to the
+    compiler: what they rule out is not even compiled. faces: the face number of
     each quad. heights, colors, normals, facade: `Map`s (one by one: Numba's parallel loops take no nested tuples). The
     bands are taken in an order that gives every thread an even sample of the picture.
     """
@@ -201,5 +234,17 @@ def draw(
         if patch_id == 0:
             clear(target, background, first_row * width, last_row * width)
         _draw_band(
-            repeat, keep, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target
+            repeat,
+            keep,
+            found,
+            triangles,
+            faces,
+            constants,
+            settings,
+            maps,
+            patch_id,
+            width,
+            first_row,
+            last_row,
+            target,
         )

@@ -10,13 +10,18 @@ from numpy.typing import ArrayLike
 
 from ibr_ref.scene import BasePolygon, Camera, Light, checks
 
-METHODS = ("protruded", "exact", "relief", "texture")
+COMPARED = ("welsh", "mcguire", "donnelly", "tatarchuk", "cone", "relaxed_cone", "maximum_mipmap")
+"""Systems with a kernel of their own (`compared`)."""
+METHODS = ("protruded", "exact", "relief", "texture", *COMPARED)
 INTERVALS = ("paper", "volume")
 FACES = ("auxiliary", "base", "extended")
 DEPTHS = ("displaced", "polygon")
 
 MOST_LATTICE = 2**24
 """Largest N 2^M: the lattice of a ray, so that float32 ports can hold every index."""
+
+MOST_STEPS = 2**16
+"""Of a search whose steps depend on the view's angle."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,7 +72,15 @@ class Params:
     shadow_bias: float = 1e-3
     """In units of h, >= 0."""
     method: str = "protruded"
-    """The search; "exact" is the first intersection itself, "relief" and "texture" what the paper compares with."""
+    """The search; "exact" is the first intersection itself, all others are the systems compared with it."""
+    lod_bias: float = 1.0
+    """Level of the mip chain that `"mcguire"` takes heights from, in [0, 32]; fractions mix two levels."""
+    min_steps: int = 8
+    """Steps of `"tatarchuk"` where the view is straight down, >= 1."""
+    max_steps: int = 50
+    """Steps of `"tatarchuk"` where it is horizontal, at least min_steps, at most 2^16."""
+    distance_layers: int = 32
+    """Layers of the distance texture of `"donnelly"`, 1 to 1024; at most 2^26 voxels with the height map's texels."""
 
     def __post_init__(self) -> None:
         set_field = object.__setattr__
@@ -80,6 +93,12 @@ class Params:
             checks.choice(name, getattr(self, name), allowed)
         set_field(self, "shadow_steps", checks.whole("shadow_steps", self.shadow_steps, low=0, high=2**20))
         set_field(self, "shadow_bias", checks.number("shadow_bias", self.shadow_bias, low=0.0))
+        set_field(self, "lod_bias", checks.number("lod_bias", self.lod_bias, low=0.0, high=32.0))
+        set_field(self, "min_steps", checks.whole("min_steps", self.min_steps, low=1, high=MOST_STEPS))
+        set_field(self, "max_steps", checks.whole("max_steps", self.max_steps, low=1, high=MOST_STEPS))
+        if self.min_steps > self.max_steps:
+            raise checks.reject("min_steps", self.min_steps, f"<= max_steps = {self.max_steps}")
+        set_field(self, "distance_layers", checks.whole("distance_layers", self.distance_layers, low=1, high=1024))
         if self.interval == "volume" and self.faces != "auxiliary":
             raise checks.reject("faces", self.faces, 'auxiliary (with interval="volume")')
 

@@ -8,30 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.displacement.below import border, sample
 from ibr_ref.jit import device
-from ibr_ref.pipeline.sampling import fetch
-
-
-@device
-def _in_domain(u, v, bounded):
-    return not bounded or (0.0 <= u <= 1.0 and 0.0 <= v <= 1.0)
-
-
-@device
-def _sample(repeat, texels, columns, rows, bounded, u, v, d):
-    """Whether the sample is at or below the surface; its margin |d - D| (infinite at d = 0 and d = 1); H, 0 outside."""
-    if not _in_domain(u, v, bounded):
-        return False, np.inf, 0.0
-    height = fetch(texels, columns, rows, repeat, u, v)
-    depth = 1.0 - height
-    return d >= depth, (abs(d - depth) if 0.0 < d < 1.0 else np.inf), height
-
-
-@device
-def _border(u, v, bounded, nearest):
-    if not bounded:
-        return nearest
-    return min(nearest, abs(min(min(u, 1.0 - u), min(v, 1.0 - v))))
 
 
 @device
@@ -47,24 +25,24 @@ def relief_search(repeat, fragments, count, eye, texels, columns, rows, settings
             continue
         along_u = (eye[0] - eye[3] * u) / to_h
         along_v = (eye[1] - eye[3] * v) / to_h
-        margin, border, before, height = np.inf, np.inf, 0.0, 0.0
+        margin, nearest, before, height = np.inf, np.inf, 0.0, 0.0
         step, below = 0, False
         while not below and step <= settings.linear_steps:
             before = height
             d = step * stride / end
             p_u, p_v = u - along_u * d, v - along_v * d
-            below, distance, height = _sample(repeat, texels, columns, rows, bounded, p_u, p_v, d)
-            margin, border = min(margin, distance), _border(p_u, p_v, bounded, border)
+            below, distance, height = sample(repeat, texels, columns, rows, bounded, p_u, p_v, d)
+            margin, nearest = min(margin, distance), border(p_u, p_v, bounded, nearest)
             step += 0 if below else 1
         inside, outside = step * stride, max(0, step - 1) * stride
         while below and inside - outside > 1:
             middle = (inside + outside) // 2
             d = middle / end
             p_u, p_v = u - along_u * d, v - along_v * d
-            deeper, distance, _ = _sample(repeat, texels, columns, rows, bounded, p_u, p_v, d)
-            margin, border = min(margin, distance), _border(p_u, p_v, bounded, border)
+            deeper, distance, _ = sample(repeat, texels, columns, rows, bounded, p_u, p_v, d)
+            margin, nearest = min(margin, distance), border(p_u, p_v, bounded, nearest)
             inside, outside = (middle, outside) if deeper else (inside, middle)
-        hits.margin[i], hits.domain_margin[i] = margin, border
+        hits.margin[i], hits.domain_margin[i] = margin, nearest
         if below:
             d = inside / end
             hits.linear_index[i], hits.hit_index[i] = step, inside

@@ -7,7 +7,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.displacement import inputs
+from ibr_ref.displacement import compared, inputs
 from ibr_ref.displacement.buffers import Settings
 from ibr_ref.displacement.fragment import Map, Maps, draw
 from ibr_ref.displacement.inputs import Params, Scene
@@ -36,21 +36,28 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
     faces = [vertex_stage(c, params.drawn_faces, params.interval) for c in constants]
     target = target_for(camera.width * camera.height, stages)
     background = np.array(scene.background, np.float64)
+    fetches: list[NDArray[np.int32]] = []
     for patch_id, (polygon, quads) in enumerate(zip(scene.polygons, faces, strict=True)):
         clipped = clip_triangles(quads.clip, quads.patch, quads.triangles, camera.width, camera.height)
         triangles = set_up(clipped, camera.width, camera.height)
         repeat = True if polygon.domain == "repeat" else None
         keep = True if stages else None
         settings = _settings(params, polygon)
+        maps, hits = _maps(polygon), None
+        if params.method in inputs.COMPARED:
+            hits, counts = compared.search(
+                params, polygon, maps.height, constants[patch_id], triangles, camera.width, camera.height
+            )  # fmt: skip
+            fetches.append(counts)
         draw(
-            repeat, keep, triangles, quads.numbers, constants[patch_id], settings, *_maps(polygon), patch_id,
+            repeat, keep, hits, triangles, quads.numbers, constants[patch_id], settings, *maps, patch_id,
             camera.width, camera.height, background, target,
         )  # fmt: skip
     size = (camera.height, camera.width)
     return Frame(
         color=target.color.reshape(*size, 3),
         depth=target.depth.reshape(size),
-        stages=_stages(faces, target, size) if stages else {},
+        stages=_stages(faces, target, size, fetches) if stages else {},
     )
 
 
@@ -65,7 +72,9 @@ def _settings(params: Params, polygon: BasePolygon) -> Settings:
         steep_threshold=params.steep_threshold,
         shadow_steps=params.shadow_steps,
         shadow_bias=params.shadow_bias,
-        polygon_depth=params.depth == "polygon",
+        floor=0.0 if params.method in ("protruded", "exact", "texture", "welsh") else -1.0,
+        # Welsh's offsets displace nothing.
+        polygon_depth=params.depth == "polygon" or params.method == "welsh",
     )
 
 
@@ -99,8 +108,10 @@ def _maps(polygon: BasePolygon) -> Maps:
     )
 
 
-def _stages(faces: list[Faces], target: Target, size: tuple[int, int]) -> dict[str, NDArray[np.generic]]:
-    """The stage arrays by their names in the contract."""
+def _stages(
+    faces: list[Faces], target: Target, size: tuple[int, int], fetches: list[NDArray[np.int32]]
+) -> dict[str, NDArray[np.generic]]:
+    """The stage arrays by their names in the contract. fetches: of the compared systems, for each polygon."""
     resolve_margins(target, target.second)
     stages: dict[str, NDArray[np.generic]] = {
         "vertex.clip": np.concatenate([f.clip for f in faces]),
@@ -124,5 +135,8 @@ def _stages(faces: list[Faces], target: Target, size: tuple[int, int]) -> dict[s
         for name in names:
             array = getattr(target, name)
             stages[f"{group}.{name}"] = array.reshape(*size, *array.shape[1:])
+    if fetches:
+        shown = np.maximum(target.patch_id, 0)[None]
+        stages["march.fetches"] = np.take_along_axis(np.array(fetches), shown, axis=0).reshape(size)
     stages["resolve.margin"] = target.second.reshape(size)
     return stages

@@ -31,9 +31,9 @@ def _stretch(repeat, u, v, h, floor, towards_u, towards_v, towards_h, w):
 
 
 @device
-def self_shadow(repeat, keep, hits, count, texels, columns, rows, light, floor, settings, shades):
-    """`lit` and its margin for each kept hit. floor: the solid lies in [floor, floor + 1], -1 for relief mapping."""
-    steps = settings.shadow_steps
+def self_shadow(repeat, keep, hits, count, texels, columns, rows, light, settings, shades):
+    """`lit` and its margin for each kept hit."""
+    steps, floor = settings.shadow_steps, settings.floor
     for i in range(count):
         if hits.hit_index[i] < 0:
             continue

@@ -41,13 +41,11 @@ class Examination:
 def judge(case: Case, handed: Handed, device: Device) -> list[Judgement]:
     """All that one device allows: the stages in order, each on the port's own inputs, then "image" if a colour is there.
 
-    A stage of which only the picture was handed in, and nothing that it was made of, is not judged as a stage: that is
-    the picture's judgement.
+    Where nothing but the picture and its depth was handed in there are no stages to tell apart.
     """
     method = referee(case.method)
-    judgements = [
-        j for j in method.judge_stages(case, device, handed) if j.replayed or {*j.arrays} - {"color", "depth"}
-    ]
+    alone = {*handed} <= {"color", "depth"}
+    judgements = [] if alone and "color" in handed else method.judge_stages(case, device, handed)
     return [*judgements, method.judge_image(case, device, handed)] if "color" in handed else judgements
 
 

@@ -47,7 +47,7 @@ class MutantResult:
     elements: int
     """Wrong there, in that stage."""
     image_case: str | None
-    """On which its image alone was enough."""
+    """On which its picture and depth alone were enough."""
     image_pixels: int
 
     @property
@@ -57,9 +57,12 @@ class MutantResult:
 
 
 def port_output(case: Case, port: type[PlainPort], variant: Variant | None = None) -> Handed:
-    """All arrays of a plain port on a case."""
+    """All arrays of a plain port on a case; colours of a port that makes bytes as bytes."""
     policy = Policy() if variant is None else variant.policy
-    return port(case.scene, case.params, policy, case.inputs).render()
+    arrays = port(case.scene, case.params, policy, case.inputs).render()
+    if policy.color_bits == 8:
+        arrays["color"] = np.rint(255.0 * np.asarray(arrays["color"], np.float64)).astype(np.uint8)
+    return arrays
 
 
 def try_variants(method: str, *, kinds: Sequence[str] | None = None) -> Iterator[VariantResult]:
@@ -107,7 +110,7 @@ def _try_mutant(method: str, mutant: Mutant, cases: Sequence[Case]) -> MutantRes
             wrong = next((j for j in judge(case, handed, device) if j.wrong.any()), None)
             by_stages = None if wrong is None else (case.name, wrong)
         if by_image is None:
-            alone = {"color": handed["color"]}
+            alone = {name: handed[name] for name in ("color", "depth")}
             image = judge(case, alone, device)[-1]
             if image.wrong.any():
                 by_image = case.name, int(image.wrong.sum())

@@ -110,9 +110,9 @@ def _bands(left, right, top, stop):
 
 
 @device
-def _set_up_part(x, y, width, columns, rows, left, right, top, stop, counts):
+def _set_up_part(x, y, width, height, columns, rows, left, right, top, stop, counts):
     _fill_spans(x, width, columns, left, right)
-    _fill_spans(y, width, rows, top, stop)
+    _fill_spans(y, height, rows, top, stop)
     for i in range(len(x)):
         band, end = _bands(left[i], right[i], top[i], stop[i])
         while band < end:
@@ -121,7 +121,7 @@ def _set_up_part(x, y, width, columns, rows, left, right, top, stop, counts):
 
 
 @kernel
-def _set_up(x, y, width, columns, rows, spans, counts):
+def _set_up(x, y, width, height, columns, rows, spans, counts):
     """What each splat covers, and how many of each part of the list each band has a share in: counts (parts, bands)."""
     left, right, top, stop = spans
     parts = len(counts)
@@ -129,7 +129,7 @@ def _set_up(x, y, width, columns, rows, spans, counts):
     for part in prange(parts):
         first, last = min(len(width), part * chunk), min(len(width), (part + 1) * chunk)
         _set_up_part(
-            x[first:last], y[first:last], width[first:last], columns, rows,
+            x[first:last], y[first:last], width[first:last], height[first:last], columns, rows,
             left[first:last], right[first:last], top[first:last], stop[first:last], counts[part],
         )  # fmt: skip
 
@@ -248,15 +248,38 @@ def _draw(splats, spans, members, starts, disc, base, target):
         _draw_band(splats, spans, members[starts[band] : starts[band + 1]], disc, band * BAND_ROWS, base, target)
 
 
-def draw_splats(splats: Splats, disc: bool, base: int, target: Target) -> None:
-    """Draw splats into `target`, over what has been drawn before; the first of them has the index `base` there."""
-    rows, columns = target.splat.shape
+class Shares(NamedTuple):
+    """What splats cover, and which of them each band of rows has to draw."""
+
+    spans: Spans
+    members: NDArray[np.int32]
+    """Indices of splats: band by band, in each in submission order."""
+    starts: NDArray[np.int64]
+    """(bands + 1,) where each band's members start."""
+
+
+def share_out(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    width: NDArray[np.float64],
+    height: NDArray[np.float64],
+    columns: int,
+    rows: int,
+) -> Shares:
+    """Sort boxes (N,) around window positions, which are snapped, into the bands of a picture of columns x rows pixels."""
     bands = -(-rows // BAND_ROWS)
-    spans = Spans(*arrays([(np.int32, (len(splats.depth),))] * 4))
+    spans = Spans(*arrays([(np.int32, (len(x),))] * 4))
     counts = np.zeros((_PARTS, bands), np.int64)
-    _set_up(splats.x, splats.y, splats.width, float(columns), float(rows), spans, counts)
+    _set_up(x, y, width, height, float(columns), float(rows), spans, counts)
     ends = np.cumsum(counts.T).reshape(bands, _PARTS).T  # band by band, in each the parts in order
     starts = np.append(ends[0] - counts[0], ends[-1, -1])
     (members,) = arrays([(np.int32, (int(starts[-1]),))])
     _sort(spans, np.ascontiguousarray(ends - counts), members)
+    return Shares(spans, members, starts)
+
+
+def draw_splats(splats: Splats, disc: bool, base: int, target: Target) -> None:
+    """Draw splats into `target`, over what has been drawn before; the first of them has the index `base` there."""
+    rows, columns = target.splat.shape
+    spans, members, starts = share_out(splats.x, splats.y, splats.width, splats.width, columns, rows)
     _draw(splats, spans, members, starts, disc, base, target)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,6 +41,12 @@ class Mesh:
         if bad.any():
             raise checks.reject("color", float(color[bad][0]), "numbers in [0, 1]")
         object.__setattr__(self, "color", checks.frozen(color))
+
+    @cached_property
+    def bounds(self) -> NDArray[np.float64]:
+        """(2, 3) the lowest and the highest coordinates of all vertices."""
+        vertices = np.asarray(self.vertices)
+        return checks.frozen(np.stack([vertices.min(axis=0), vertices.max(axis=0)]))
 
     def _checked_triangles(self, count: int) -> NDArray[np.int32]:
         checks.numbers("triangles", self.triangles, "an array (T, 3) of whole numbers")

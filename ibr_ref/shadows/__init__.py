@@ -3,7 +3,9 @@
 `maps = prepare(Scene, Params)` renders the nine maps of the caster alone and places their control points; `render(Scene,
 Params, maps=maps)` draws a frame for any offset of the caster: six warps (or three) a light sample, however many triangles
 the caster has. `method="direct"` renders a map for every sample instead; `method="grid"` takes n x n maps made beforehand
-(`prepare_grid`) without a warp, raw or compressed by Haar wavelets. `shadow_maps` gives the maps alone.
+(`prepare_grid`) without a warp, raw or compressed by Haar wavelets. `shadow_maps` gives the maps alone. `render_soft(Scene,
+SoftParams)` softens the shadow by other ways than samples of the light, to compare with: rays, a convolution, and
+percentage-closer filtering (`help(ibr_ref.shadows.soft)`).
 
 The caster's vertices stand at v + x a + y b for the offset (x, y). For a light sample at l the object is at
 (x, y) - (l - centre) on the two axes, and the light looks from l in the centre's directions, bit for bit.
@@ -59,5 +61,18 @@ from ibr_ref.shadows.grid import MapGrid, prepare_grid
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.prepared import Maps, prepare
 from ibr_ref.shadows.render import render, shadow_maps
+from ibr_ref.shadows.soft import SoftParams, render_soft
 
-__all__ = ["AreaLight", "MapGrid", "Maps", "Params", "Scene", "prepare", "prepare_grid", "render", "shadow_maps"]
+__all__ = [
+    "AreaLight",
+    "MapGrid",
+    "Maps",
+    "Params",
+    "Scene",
+    "SoftParams",
+    "prepare",
+    "prepare_grid",
+    "render",
+    "render_soft",
+    "shadow_maps",
+]

@@ -252,9 +252,10 @@ def _fill(source, other, share, size, uv, other_uv, begin, end, index, fraction,
     u, v = uv[0, begin:end], uv[1, begin:end]
     _fetch(source.texels, source.levels, size, u, v, index, fraction, out)
     if other is not None:
-        _fetch(other.texels, other.levels, size, other_uv[0, begin:end], other_uv[1, begin:end], index, fraction, spare)
+        u2, v2, texels = other_uv[0, begin:end], other_uv[1, begin:end], spare[: end - begin]
+        _fetch(other.texels, other.levels, size, u2, v2, index, fraction, texels)
         for i in range(len(out)):
-            out[i] = lerp(out[i], spare[i], share)
+            out[i] = lerp(out[i], texels[i], share)
     for i in range(len(out)):
         out[i] = outside if np.isnan(u[i]) else out[i]
 

@@ -9,16 +9,17 @@ from functools import cached_property
 from io import BytesIO
 from os import PathLike
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.io.files import atomic, contents, naming
-from ibr_ref.scene import checks
+from ibr_ref.scene import Mesh, checks
 from ibr_ref.shadows import automatic, maps
 from ibr_ref.shadows import controls as placement
 from ibr_ref.shadows.inputs import CONTENTS, LARGEST_MAP, MOST_CONTROLS, Params, Scene
-from ibr_ref.shadows.samples import caster_at, check_outside, samples_of, widened_range
+from ibr_ref.shadows.samples import check_outside, samples_of, widened_range
 from ibr_ref.shadows.spans import spans
 from ibr_ref.shadows.warp import Nine
 
@@ -183,12 +184,21 @@ def view_of(scene: Scene, size: int, position: Array | None = None) -> maps.View
     )
 
 
+_hashed: WeakKeyDictionary[Mesh, Any] = WeakKeyDictionary()
+"""Casters' digests, to go on from: a frame must not cost more for a larger caster. Meshes do not change."""
+
+
 def source_of(scene: Scene) -> str:
     """Digest of all that the maps are rendered of."""
-    digest = hashlib.sha256()
-    for array in view_of(scene, 1):
+    view = view_of(scene, 1)
+    if scene.caster not in _hashed:
+        _hashed[scene.caster] = hashlib.sha256(view.vertices.data)
+        _hashed[scene.caster].update(view.triangles.data)
+    digest = _hashed[scene.caster].copy()
+    for array in (view.axes, view.view_from_world, view.clip_from_view):
         digest.update(np.ascontiguousarray(array).data)
-    return digest.hexdigest()
+    found: str = digest.hexdigest()
+    return found
 
 
 def texels_at(view: maps.View, offset: Array, params: Params) -> NDArray[Any]:
@@ -217,7 +227,7 @@ def prepare(
     centre = scene.light.arrays[0]
     positions = maps.positions(low, high, np.array(scene.on_axes(centre)))
     for offset in positions.reshape(-1, 2):
-        check_outside("light.position", caster_at(scene, offset), offset, centre)
+        check_outside("light.position", scene, offset, centre)
     points = _points(controls, params)
     view = view_of(scene, params.map_size)
     texels = np.stack([np.stack([texels_at(view, offset, params) for offset in line]) for line in positions])

@@ -38,7 +38,7 @@ def render(
     params = Params() if params is None else params
     samples = samples_of(scene, params)
     images, kept = _images(scene, params, samples, maps, stages)
-    surface = _surface(scene)
+    surface = surface_of(scene)
     lookup = _lookup(scene, params, stages)
     shadow = np.zeros(surface.depth.shape)
     projections = []
@@ -170,7 +170,13 @@ def _from_grid(scene: Scene, params: Params, samples: Sequence[Sample], maps: Ma
 # --- What they are projected onto ------------------------------------------------------------------------------------
 
 
-def _surface(scene: Scene) -> Surface:
+def caster_from(scene: Scene) -> int:
+    """Index of the caster's first triangle on the surface."""
+    return sum(len(np.asarray(mesh.triangles)) for mesh in scene.receivers)
+
+
+def surface_of(scene: Scene) -> Surface:
+    """What the scene's camera sees, the caster at its offset."""
     objects = [
         Object(np.asarray(mesh.vertices), np.asarray(mesh.triangles), np.asarray(mesh.color))
         for mesh in (*scene.receivers, scene.caster)
@@ -182,8 +188,7 @@ def _surface(scene: Scene) -> Surface:
 
 def _lookup(scene: Scene, params: Params, keep: bool) -> Lookup:
     mode = MASK if params.content == "mask" else DEPTH_PCF if params.pcf else DEPTH
-    caster = sum(len(np.asarray(mesh.triangles)) for mesh in scene.receivers)
-    return Lookup(mode, params.quantize is not None, float(params.bias), caster, keep)
+    return Lookup(mode, params.quantize is not None, float(params.bias), caster_from(scene), keep)
 
 
 # --- Stages ----------------------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.scene import checks
-from ibr_ref.shadows.containment import Solid, contains, solid, touched
+from ibr_ref.shadows.containment import contains, solid, touched
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.vertex import place
 
@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 
 _STEP = 2.0 / 3.0
 """g: centres of cells three to an edge. Samples on the border would be 2 to 4 times farther from the area light."""
+
+_NEAR = 1e-6
+"""Room around the caster's box, as a share of its coordinates: more than what counts as touching it."""
 
 
 class Sample(NamedTuple):
@@ -43,7 +46,6 @@ def samples_of(scene: Scene, params: Params) -> list[Sample]:
     """
     centre = scene.light.arrays[0]
     receivers = [solid(np.asarray(mesh.vertices), np.asarray(mesh.triangles)) for mesh in scene.receivers]
-    caster = caster_at(scene, np.asarray(scene.offset))
     samples = []
     for i, position in enumerate(_positions(scene, params)):
         field = f"light_samples[{i}]" if isinstance(params.light_samples, np.ndarray) else "light.position"
@@ -56,22 +58,30 @@ def samples_of(scene: Scene, params: Params) -> list[Sample]:
             if triangle is not None:
                 where = f"a point off receivers[{k}] (it is on triangle {triangle})"
                 raise checks.reject(field, position.tolist(), where)
-        check_outside(field, caster, np.asarray(scene.offset), position)
+        check_outside(field, scene, np.asarray(scene.offset), position)
         samples.append(Sample(position, np.array(scene.on_axes(position - centre))))
     return samples
 
 
-def caster_at(scene: Scene, offset: Array) -> Solid:
-    """The caster where it stands at an offset."""
-    return solid(place(np.asarray(scene.caster.vertices), scene.axes, offset), np.asarray(scene.caster.triangles))
+def check_outside(field: str, scene: Scene, offset: Array, position: Array) -> None:
+    """Raise ValueError for a light inside the caster at an offset, or on its surface.
 
-
-def check_outside(field: str, caster: Solid, offset: Array, position: Array) -> None:
-    """Raise ValueError for a light inside the caster at an offset, or on its surface."""
+    Its triangles are looked at only where the light is near its box: a warp must not cost more for a larger caster.
+    """
+    if not _is_near(scene, offset, position):
+        return
+    caster = solid(place(np.asarray(scene.caster.vertices), scene.axes, offset), np.asarray(scene.caster.triangles))
     if contains(caster, position) or touched(caster, position) is not None:
         raise checks.reject(
             field, position.tolist(), f"a point outside the caster (at offset {tuple(offset.tolist())})"
         )
+
+
+def _is_near(scene: Scene, offset: Array, position: Array) -> bool:
+    """Whether a position is in the caster's box at an offset, or beside it by no more than rounding."""
+    low, high = place(scene.caster.bounds, scene.axes, offset)
+    room = _NEAR * float(np.abs([low, high]).max())
+    return bool(((low - room <= position) & (position <= high + room)).all())
 
 
 def widened_range(scene: Scene, samples: list[Sample]) -> tuple[Array, Array]:

@@ -54,8 +54,8 @@ def live_columns(spans, x0, y0, x1, y1, count):
     least, most = solid_range(spans, min(y0, y1), max(y0, y1))
     if max(x0, x1) < least or min(x0, x1) > most:
         return 0, 0
-    step = (x1 - x0) / np.float64(count - 1)
-    if not abs(step) > _SLACK:  # also for a single column
+    step = (x1 - x0) / np.float64(max(1, count - 1))
+    if abs(step) <= _SLACK:  # also for a single column
         return 0, count
     a, b = (least - x0) / step, (most - x0) / step
     last = np.float64(count)

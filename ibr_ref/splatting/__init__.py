@@ -2,7 +2,9 @@
 
 `render(Scene, Params)` turns every valid pixel of a few reference images into a point, lights it in the vertex stage, and
 draws it as a splat whose width is a rational law of the distance. `fit_splat_law` finds that law, which the paper sets by
-hand; `coverage` says what a frame shows of its references, and where it has holes.
+hand; `coverage` says what a frame shows of its references, and where it has holes. What the paper compares with is here
+too: `Params(method="software")` is the loop in software, `bake` and a constant width are fixed-function points; beyond it
+`Params(shape="ellipse")` draws elliptical weighted averages, and `choose_references` chooses the images worth keeping.
 
 **Stage arrays** (`frame.stages`). H x W is the picture, V the number of valid pixels of all images, in order of (image, row,
 column). A dropped point, one outside w > 0, 0 <= z <= w in clip space, has width 0 and NaN for window and depth. Where no
@@ -24,6 +26,16 @@ splat covers a pixel, the winner is -1, the depth 1, the margin infinite. The st
 | raster.overdraw | (H, W) int32 | all splats that cover the pixel |
 | raster.margin | (H, W) float64 | second-smallest minus smallest depth of those; inf with fewer than two |
 
+With `shape="ellipse"` the nearest splat is `raster.splat` and `vertex.width` the larger side of the ellipse's box; and:
+
+| name | shape, dtype | what |
+|---|---|---|
+| vertex.covariance | (V, 3) float64 | xx, xy, yy of the Gaussian in the window, square pixels: `footprint.py` |
+| vertex.amplitude | (V,) float64 | its weight at the centre, in (0, 1] |
+| vertex.distance | (V,) float64 | along the view axis, of which the depth tolerance is a share |
+| raster.weight | (H, W) float64 | sum of the weights that are averaged; 0 none |
+| raster.blended | (H, W) int32 | how many splats these are |
+
 **Settled here**, where the paper and common practice leave it open:
 
 - d is the distance from the eye to the point; of an orthographic camera, which has no eye, that along the view axis.
@@ -39,16 +51,33 @@ splat covers a pixel, the winner is -1, the depth 1, the margin infinite. The st
 - Whatever the images, the same picture comes out for any number of threads: a band of rows belongs to one of them.
 - The law is fitted to the tau-quantile (0.95) of the widths that the points need, each at most 1.5 times what a surface that
   faces both cameras would need there: grazing surfaces stretch without limit. `size_law.py` says more.
+- Ellipses are those of the reference pixels' own Gaussians on the tangent plane (`footprint`), not discs of one radius; the
+  covered pixels are those within `cutoff` standard deviations of the centre, which is snapped; no splat is left out because
+  it faces away. Their sums run in submission order.
 
 **For ports**: a GL port that flips the rows on read-back turns the half-open rule of the squares upside down; one that
 negates clip y agrees. Point sprites clamp widths, may snap them, and are culled by their centre; quads do not. The normals
 are also an input: hand your port ours (`atlas.normal`, 8 bits), and judge its own by interval.
 """
 
+from ibr_ref.splatting.baking import bake
 from ibr_ref.splatting.coverage import Coverage
 from ibr_ref.splatting.inputs import Params, Scene
 from ibr_ref.splatting.measures import bounds, coverage, fit_splat_law
 from ibr_ref.splatting.render import render
+from ibr_ref.splatting.selection import Selection, choose_references
 from ibr_ref.splatting.size_law import SplatLaw
 
-__all__ = ["Coverage", "Params", "Scene", "SplatLaw", "bounds", "coverage", "fit_splat_law", "render"]
+__all__ = [
+    "Coverage",
+    "Params",
+    "Scene",
+    "Selection",
+    "SplatLaw",
+    "bake",
+    "bounds",
+    "choose_references",
+    "coverage",
+    "fit_splat_law",
+    "render",
+]

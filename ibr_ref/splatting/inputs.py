@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
+from ibr_ref.pipeline.ellipses import MOST_CUTOFF
 from ibr_ref.scene import Camera, DepthImage, Light, checks
 
-SHAPES = ("square", "disc")
+SHAPES = ("square", "disc", "ellipse")
+METHODS = ("shader", "software")
 
 MOST_POINTS = 2**31 - 1
 """Points of a scene: their indices are 32-bit integers."""
@@ -70,7 +72,20 @@ class Params:
     max_width: float = 64.0
     """Pixels, >= min_width."""
     shape: str = "square"
-    """"square" | "disc"."""
+    """"square" | "disc": nearest splat wins, as in the paper | "ellipse": elliptical weighted averages (Zwicker et al.
+    2001), whose size follows from the normals, not from the law, and is bounded by `max_width` alone."""
+    footprint: float = 0.5
+    """shape="ellipse": standard deviation of a point's Gaussian, in pixels of its reference image; in (0, 8]."""
+    low_pass: float = 0.5
+    """shape="ellipse": standard deviation of the filter of the picture's pixels; in [0.1, 8]."""
+    cutoff: float = 2.0
+    """shape="ellipse": where the Gaussians end, in standard deviations; in [1, 8]."""
+    depth_tolerance: float = 0.01
+    """shape="ellipse": splats at most this share of the distance along the view axis behind the nearest are averaged with
+    it; in [0, 1]."""
+    method: str = "shader"
+    """"shader": the stages of the paper, each over many points | "software": the loop that it is compared with (table 1),
+    one point after another on one thread; the same picture, and no ellipses."""
     max_atlas_size: int = 4096
     """Pixels a side of each of the atlas' four pages."""
 
@@ -82,4 +97,19 @@ class Params:
         set_field(self, "min_width", checks.number("min_width", self.min_width, low=0.0, high=WIDEST))
         set_field(self, "max_width", checks.number("max_width", self.max_width, low=self.min_width, high=WIDEST))
         checks.choice("shape", self.shape, SHAPES)
+        set_field(self, "footprint", checks.number("footprint", self.footprint, above=0.0, high=8.0))
+        set_field(self, "low_pass", checks.number("low_pass", self.low_pass, low=0.1, high=8.0))
+        set_field(self, "cutoff", checks.number("cutoff", self.cutoff, low=1.0, high=MOST_CUTOFF))
+        set_field(self, "depth_tolerance", checks.number("depth_tolerance", self.depth_tolerance, low=0.0, high=1.0))
+        checks.choice("method", self.method, METHODS)
+        self._check_ellipses()
         set_field(self, "max_atlas_size", checks.whole("max_atlas_size", self.max_atlas_size, low=1, high=65536))
+
+    def _check_ellipses(self) -> None:
+        """What the choice of ellipses needs of the other fields."""
+        if self.shape != "ellipse":
+            return
+        if self.method == "software":
+            raise checks.reject("shape", self.shape, "square | disc, with method='software'")
+        if self.max_width < 2.0 * self.cutoff * self.low_pass:
+            raise checks.reject("max_width", self.max_width, ">= 2 cutoff low_pass, with shape='ellipse'")

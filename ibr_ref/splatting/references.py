@@ -8,8 +8,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.scene import Camera, DepthImage
-from ibr_ref.splatting.buffers import Reference, View
+from ibr_ref.scene import Camera, DepthImage, Light
+from ibr_ref.splatting.buffers import Lighting, Reference, View
 from ibr_ref.splatting.normals import normals
 
 
@@ -69,3 +69,11 @@ def view_of(camera: Camera) -> View:
         width=float(camera.width),
         height=float(camera.height),
     )
+
+
+def lighting_of(light: Light | None) -> Lighting:
+    """The light, or none, as the kernels see it."""
+    if light is None:
+        return Lighting(False, np.zeros(4), np.zeros(3), 0)
+    phong = np.array([light.ambient, light.diffuse, light.specular])
+    return Lighting(True, light.homogeneous, phong, light.exponent)

@@ -161,25 +161,32 @@ def light_pixels(reference, normals, lighting, eye_array, pixels, colors):
 
 
 @device
-def _color_row(reference, normals, lighting, eye, row, colors):
+def _color_row(reference, normals, lighting, eye, row, base, colors):
     first, stop = reference.row_starts[row], reference.row_starts[row + 1]
     pixels, stored = reference.pixels[first:stop], reference.color
     if lighting.lit:
-        light_pixels(reference, normals, lighting, eye, pixels, colors[first:stop])
+        light_pixels(reference, normals, lighting, eye, pixels, colors[first - base : stop - base])
         return
     for i in range(len(pixels)):
         for channel in range(3):
-            colors[first + i, channel] = stored[pixels[i], channel]
+            colors[first - base + i, channel] = stored[pixels[i], channel]
 
 
 @kernel
-def _colors(reference, normals, lighting, eye, colors):
-    for row in prange(len(reference.row_starts) - 1):
-        _color_row(reference, normals, lighting, eye, row, colors)
+def _colors(reference, normals, lighting, eye, first_row, last_row, colors):
+    base = reference.row_starts[first_row]
+    for turn in prange(last_row - first_row):
+        _color_row(reference, normals, lighting, eye, first_row + turn, base, colors)
 
 
 def color_vertices(
-    reference: Reference, normals: NDArray[np.uint8], lighting: Lighting, view: View, colors: NDArray[np.float64]
+    reference: Reference,
+    normals: NDArray[np.uint8],
+    lighting: Lighting,
+    view: View,
+    first_row: int,
+    last_row: int,
+    colors: NDArray[np.float64],
 ) -> None:
-    """Colours (V, 3) of all points of a reference image."""
-    _colors(reference, normals, lighting, view.eye, colors)
+    """Colours (n, 3) of the points of the image rows [first_row, last_row)."""
+    _colors(reference, normals, lighting, view.eye, first_row, last_row, colors)

@@ -53,6 +53,19 @@ def test_the_report(run: Run, cube: Path, tmp_path: Path) -> None:
         assert word in out
 
 
+@pytest.mark.parametrize("method", ["traced", "convolution", "pcss"])
+def test_the_whole_light(run: Run, cube: Path, tmp_path: Path, method: str) -> None:
+    out, stages = tmp_path / "out.png", tmp_path / "dump.npz"
+    code, said, err = run(*of_cube(cube, out, "--method", method, "--stages", stages, "--report"))
+    assert (code, err) == (0, "")
+    assert float(said.split("difference")[1]) < 0.05
+    with np.load(stages, allow_pickle=False) as dump:
+        shadow = dump["soft.shadow"]
+    assert ((shadow > 0.1) & (shadow < 0.9)).any()
+    assert imageio.imread(out).shape == (72, 96, 3)
+    assert_one_line(run(*of_cube(cube, out, "--method", method, "--maps", tmp_path / "m.npz")), "--maps", "warp")
+
+
 def test_a_mesh_of_y_up_stands(run: Run, tmp_path: Path) -> None:
     """A pole along y: upright as OBJ, lying as it is where z is said to be up."""
     path = tmp_path / "pole.obj"

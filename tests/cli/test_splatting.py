@@ -62,6 +62,24 @@ def test_a_law_by_hand_is_the_one_that_is_drawn(run: Run, cube: Path, tmp_path: 
         assert set(np.unique(dump["vertex.width"])) == {2.5}
 
 
+def test_ellipses(run: Run, cube: Path, tmp_path: Path) -> None:
+    stages, options = tmp_path / "dump.npz", ("--shape", "ellipse", "--cutoff", "2.5", "--depth-tolerance", "0.02")
+    code, out, err = run(*of_mesh(cube, tmp_path / "out.png", *options, "--report", "--stages", stages))
+    assert (code, err) == (0, "")
+    assert "out to 2.5 of them; averaged within 2 % of the distance" in out
+    with np.load(stages, allow_pickle=False) as dump:
+        assert (dump["raster.blended"] > 1).any()
+
+
+def test_the_loop_in_software_draws_the_same(run: Run, cube: Path, tmp_path: Path) -> None:
+    pictures = []
+    for method in ("shader", "software"):
+        out = tmp_path / f"{method}.png"
+        assert run(*of_mesh(cube, out, "--light", "1,-2,3", "--method", method)) == (0, "", "")
+        pictures.append(imageio.imread(out))
+    assert np.array_equal(*pictures)
+
+
 @real_data
 def test_photographs(run: Run, tmp_path: Path) -> None:
     folder = REAL / "breakdancers"
@@ -85,6 +103,11 @@ def test_photographs(run: Run, tmp_path: Path) -> None:
         (("--reference-size", "0"), ("size",)),
         (("--max-width", "0.5"), ("max_width", "0.5")),
         (("--shape", "star"), ("star",)),
+        (("--shape", "ellipse", "--method", "software"), ("shape", "ellipse", "square | disc")),
+        (("--footprint", "0"), ("footprint", "0.0")),
+        (("--low-pass", "0.01"), ("low_pass", "0.01")),
+        (("--cutoff", "9"), ("cutoff", "9.0")),
+        (("--depth-tolerance", "2"), ("depth_tolerance", "2.0")),
         (("--light", "0,0,0"), ("direction",)),
         (("--size", "0x0"), ("0x0",)),
         (("--msr", "."), ("--msr", "--mesh")),
@@ -128,9 +151,9 @@ def test_psnr_by_hand() -> None:
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from ibr_ref.cli.bench import splatting
 
-    scenes = list(splatting._scenes(None))
+    scenes = list(splatting.scenes(None))
     assert [name for name, *_ in scenes] == list(splatting.PAPER_MPPS)
-    monkeypatch.setattr(splatting, "_scenes", lambda msr: scenes[:1])
+    monkeypatch.setattr(splatting, "scenes", lambda msr: scenes[:1])
     code, out, err = run("bench", "splatting", "--repeat", "1", "--json", tmp_path / "times.json")
     assert (code, err) == (0, "")
     assert "7800GTX" in out
@@ -144,7 +167,7 @@ def test_bench_prints_the_quality_of_the_views(run: Run, tmp_path: Path, monkeyp
     """The figures that the README gives, as the issue of this method asks for them."""
     from ibr_ref.cli.bench import splatting
 
-    monkeypatch.setattr(splatting, "_scenes", lambda msr: iter(()))
+    monkeypatch.setattr(splatting, "scenes", lambda msr: iter(()))
     path = tmp_path / "times.json"
     code, out, err = run("bench", "splatting", "--msr", REAL / "breakdancers", "--json", path)
     assert (code, err) == (0, "")

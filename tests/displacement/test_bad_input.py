@@ -13,6 +13,7 @@ import pytest
 
 from ibr_ref import BasePolygon, Camera
 from ibr_ref.displacement import Params, Scene, render
+from ibr_ref.displacement.inputs import COMPARED
 from tests.displacement.scenes import LIGHT, camera, noise, parallel_camera, square
 
 NOT_NUMBERS = [
@@ -42,6 +43,10 @@ PARAMS = [
     *(("steep_threshold", *row) for row in NOT_NUMBERS),
     *(("shadow_steps", *row) for row in [*NOT_WHOLE, (-1, "-1"), (2**20 + 1, "1048577")]),
     *(("shadow_bias", *row) for row in [*NOT_NUMBERS, (-1e-3, "-0.001")]),
+    *(("lod_bias", *row) for row in [*NOT_NUMBERS, (-0.5, "-0.5"), (32.5, "32.5")]),
+    *((field, *row) for field in ("min_steps", "max_steps") for row in [*NOT_WHOLE, (0, "0"), (2**16 + 1, "65537")]),
+    *(("distance_layers", *row) for row in [*NOT_WHOLE, (0, "0"), (1025, "1025")]),
+    ("min_steps", 51, "51"),
     *((field, *row) for field in ("interval", "faces", "depth", "method") for row in WORDS),
     ("interval", "Paper", "'Paper'"),
     ("method", "parallax", "'parallax'"),
@@ -99,7 +104,7 @@ def test_repeat_needs_the_base_face(faces: str, method: str) -> None:
         render(scene, Params(faces=faces, method=method))
 
 
-@pytest.mark.parametrize("method", ["relief", "texture"])
+@pytest.mark.parametrize("method", ["relief", "texture", *COMPARED])
 def test_methods_on_the_base_alone_take_repeat_whatever_the_faces(method: str) -> None:
     render(Scene(polygons=[TILED], camera=camera(), light=LIGHT), Params(method=method))
 

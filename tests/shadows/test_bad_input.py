@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ibr_ref import shadows
-from ibr_ref.shadows import AreaLight, Params, Scene, prepare, render
+from ibr_ref.shadows import AreaLight, Params, Scene, SoftParams, prepare, render, render_soft
 from tests.shadows.plates import regular_grid
 from tests.shadows.scenes import box, light, params, plate, scene
 
@@ -59,6 +59,37 @@ def test_a_parameter_out_of_range_is_named(field: str, value: Any, found: str) -
 def test_sizes_that_are_only_together_too_large() -> None:
     rejected("map_size * map_samples", "40960", Params, map_size=4096, map_samples=10)
     rejected("grid_size^2 maps of map_size^2", "17179869184 bytes", Params, method="grid", map_size=4096)
+
+
+SOFT = [
+    *(("method", *row) for row in [*WORDS, ("warp", "'warp'")]),
+    *(("rays", *row) for row in [*NOT_WHOLE, (0, "0"), (65537, "65537")]),
+    *(("map_size", *row) for row in [*NOT_WHOLE, (7, "7"), (4097, "4097")]),
+    *(("map_samples", *row) for row in [*NOT_WHOLE, (0, "0"), (16, "16")]),
+    *(("receiver_planes", *row) for row in [*NOT_WHOLE, (0, "0"), (65, "65")]),
+    *((field, *row) for field in ("search_points", "filter_points") for row in [*NOT_WHOLE, (0, "0"), (4097, "4097")]),
+    *(("bias", *row) for row in [*NOT_NUMBERS, (-1e-3, "-0.001")]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("field", "value", "found"), SOFT, ids=[f"{field}={found}" for field, _, found in SOFT])
+def test_a_soft_parameter_out_of_range_is_named(field: str, value: Any, found: str) -> None:
+    rejected(field, found, SoftParams, **{field: value})
+
+
+def test_soft_maps_that_are_only_together_too_large() -> None:
+    rejected("map_size * map_samples", "40960", SoftParams, map_size=4096, map_samples=10)
+
+
+@pytest.mark.parametrize("method", ["convolution", "pcss"])
+def test_a_light_beside_the_caster_throws_no_single_map(method: str) -> None:
+    beside = scene(light=light(position=(0.0, 1.5, 0.1), target=(0.0, 0.0, 0.0), up=(0, 0, 1)))
+    rejected("light.position", "0.1", render_soft, beside, SoftParams(method=method))
+
+
+def test_a_light_inside_the_caster_casts_no_rays() -> None:
+    inside = scene(light=light(position=(0.2, -0.1, 0.1), target=(0.0, 0.0, -1.0)))
+    rejected("light.position", "0.1", render_soft, inside, SoftParams())
 
 
 SCENES = [

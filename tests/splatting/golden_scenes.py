@@ -13,7 +13,7 @@ from tests.splatting.scenes import ball_depths, image_of, looking, measured, noi
 
 __all__ = ["SCENES", "TINY", "render"]
 
-TINY = ("balls", "discs", "pages", "sheared", "within")
+TINY = ("balls", "discs", "ellipses", "pages", "sheared", "within")
 """All but the one whose references are rasterized."""
 
 rig = cache(lambda size: models.depth_rig(models.kettle(), 4, size=size))
@@ -44,6 +44,15 @@ def discs(width: int, height: int) -> tuple[Scene, Params]:
     light = Light(direction=(0.5, -0.8, 1.0), ambient=0.1, specular=0.2)
     scene = Scene(images=[image_of(camera, depth)], camera=view, light=light, background=(0.5, 0.7, 0.9))
     return scene, Params(alpha=height / (0.8 * n), max_width=height / (0.8 * n), shape="disc")
+
+
+def ellipses(width: int, height: int) -> tuple[Scene, Params]:
+    """The balls as elliptical weighted averages, before a plane that a measured camera sees."""
+    scene, _ = balls(width, height)
+    camera = measured((-1.0, -3.5, 0.5), size=(side(width), side(width)))
+    wall = image_of(camera, plane_depths(camera, (0.2, 1.0, 0.1), 1.5))
+    scene = Scene(images=[*scene.images, wall], camera=scene.camera, light=scene.light)
+    return scene, Params(shape="ellipse", footprint=0.6, low_pass=0.4, cutoff=2.2, depth_tolerance=0.03)
 
 
 def pages(width: int, height: int) -> tuple[Scene, Params]:
@@ -94,5 +103,5 @@ def kettle(width: int, height: int) -> tuple[Scene, Params]:
 
 
 SCENES: dict[str, Callable[[int, int], tuple[Scene, Params]]] = {
-    scene.__name__: scene for scene in (balls, discs, pages, sheared, within, kettle)
+    scene.__name__: scene for scene in (balls, discs, ellipses, pages, sheared, within, kettle)
 }

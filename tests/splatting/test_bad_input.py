@@ -37,12 +37,20 @@ def rejected(field: str, found: str, function: Callable[..., Any], *args: Any, *
     assert "\n" not in str(error.value)
 
 
+LAW = ("alpha", "beta", "gamma", "delta", "min_width", "max_width")
+ELLIPSE = ("footprint", "low_pass", "cutoff", "depth_tolerance")
+
 PARAMS = [
-    *((field, *row) for field in ("alpha", "beta", "gamma", "delta", "min_width", "max_width") for row in NOT_NUMBERS),
+    *((field, *row) for field in (*LAW, *ELLIPSE) for row in NOT_NUMBERS),
     *(("alpha", *row) for row in [(0.0, "0.0"), (-1.0, "-1.0"), (0, "0")]),
     *(("min_width", *row) for row in [(-1e-300, "-1e-300"), (2.0**20 + 1, "1048577.0")]),
     *(("max_width", *row) for row in [(0.5, "0.5"), (-1.0, "-1.0"), (2.0**21, "2097152.0")]),
     *(("shape", *row) for row in [("Square", "'Square'"), ("", "''"), (None, "None"), (1, "1"), (["disc"], "['disc']")]),
+    *(("footprint", *row) for row in [(0.0, "0.0"), (8.5, "8.5")]),
+    *(("low_pass", *row) for row in [(0.05, "0.05"), (9, "9")]),
+    *(("cutoff", *row) for row in [(0.9, "0.9"), (8.1, "8.1")]),
+    *(("depth_tolerance", *row) for row in [(-0.1, "-0.1"), (1.1, "1.1")]),
+    *(("method", *row) for row in [("loop", "'loop'"), (None, "None"), ("Software", "'Software'")]),
     *(("max_atlas_size", *row) for row in [*NOT_NUMBERS, (0, "0"), (-4, "-4"), (2.5, "2.5"), (65537, "65537")]),
 ]  # fmt: skip
 
@@ -55,6 +63,13 @@ def test_a_parameter_out_of_range_is_named(field: str, value: Any, found: str) -
 def test_a_width_below_the_least_is_named() -> None:
     rejected("max_width", "3.0", Params, min_width=4.0, max_width=3.0)
     rejected("max_width", "64.0", Params, min_width=65.0)
+
+
+def test_ellipses_that_cannot_be_drawn_are_named() -> None:
+    rejected("shape", "'ellipse'", Params, shape="ellipse", method="software")
+    rejected("max_width", "7.9", Params, shape="ellipse", cutoff=4.0, low_pass=1.0, max_width=7.9)
+    Params(shape="ellipse", cutoff=4.0, low_pass=1.0, max_width=8.0)
+    Params(cutoff=4.0, low_pass=1.0, max_width=7.9)
 
 
 def test_what_is_only_just_allowed_is_accepted() -> None:

@@ -78,7 +78,7 @@ def test_the_size_of_the_batches_changes_no_bit(name: str, points: int, monkeypa
     """From one row of an image on."""
     scene, params = BY_NAME[name](48, 36)
     whole = splatting.render(scene, params)
-    monkeypatch.setitem(splatting.render.__globals__, "BATCH_POINTS", points)
+    monkeypatch.setattr("ibr_ref.splatting.batches.BATCH_POINTS", points)
     parts = splatting.render(scene, params)
     for array, values in arrays_of(whole).items():
         assert not difference(array, arrays_of(parts)[array], values)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ibr_ref.cli.bench.times import best_and_median
@@ -22,8 +24,10 @@ PAPER_KETTLE = {
     "direct": (22, 48, 87, 204),
     "warp 5 x 15": (4, 5, 8, 13),
     "warp 7 x 15": (4, 5, 8, 15),
-    "warp, 5 samples": (19, 21, 38, 79),
-    "warp, 9 samples": (33, 40, 58, 142),
+    "warp 5 x 15, 5 samples": (19, 21, 38, 79),
+    "warp 7 x 15, 5 samples": (20, 21, 40, 80),
+    "warp 5 x 15, 9 samples": (33, 40, 58, 142),
+    "warp 7 x 15, 9 samples": (33, 41, 60, 140),
     "direct, 5 samples": (161, 204, 472, 1075),
     "direct, 9 samples": (198, 483, 774, 1936),
     "grid, raw": (4, 6, 6, 30),
@@ -34,74 +38,112 @@ PAPER_KETTLE = {
 
 def times(repeat: int) -> list[dict[str, Any]]:
     """One row for each way to make the shadow of an object, at each size of the maps: milliseconds and bytes."""
-    from ibr_ref import models
-
-    meshes = {"kettle": models.kettle(), "chair": models.chair(), "horse": models.horse()}
+    meshes = objects()
     rows = []
-    with progress(len(SIZES) * (len(meshes) + 1)) as step:
-        for i, size in enumerate(SIZES):
+    with progress(len(SIZES) * (len(meshes) + 3)) as step:
+        for size in SIZES:
             for name, mesh in meshes.items():
                 step(f"{name}, {size} x {size}")
-                rows += _object(name, mesh, size, i, repeat)
-            step(f"kettle by other ways, {size} x {size}")
-            rows += _ways(meshes["kettle"], size, i, repeat)
+                rows += of_object(name, mesh, size, repeat)
+            for what, of_kettle in (("by other ways", by_samples), ("from a grid", from_grids), ("softened", softened)):
+                step(f"kettle {what}, {size} x {size}")
+                rows += of_kettle(meshes["kettle"], size, repeat)
     return rows
 
 
-def _object(name: str, mesh: Mesh, size: int, i: int, repeat: int) -> list[dict[str, Any]]:
-    """Table 1: a warped shadow and the whole frame, whatever the object's complexity."""
-    from ibr_ref import models, shadows
+def objects() -> dict[str, Mesh]:
+    """Meshes with as many triangles as the paper's objects have polygons: its teapot, chair and cow."""
+    from ibr_ref import models
 
-    scene = models.shadow_stage(mesh, offset=(0.23, -0.31))
-    params = shadows.Params(map_size=size)
+    return {"kettle": models.kettle(), "chair": models.chair(), "horse": models.horse()}
+
+
+def stage(mesh: Mesh) -> Scene:
+    """The object between the nine places that maps are made for."""
+    from ibr_ref import models
+
+    return models.shadow_stage(mesh, offset=(0.23, -0.31))
+
+
+def of_object(name: str, mesh: Mesh, size: int, repeat: int) -> list[dict[str, Any]]:
+    """Table 1: a warped shadow and the whole frame, whatever the object's complexity."""
+    from ibr_ref import shadows
+
+    i = SIZES.index(size)
+    scene, params = stage(mesh), shadows.Params(map_size=size)
     maps = shadows.prepare(scene, params)
     frame = best_and_median(lambda: shadows.render(scene, params, maps=maps, stages=False), repeat)
     return [
-        _row(name, "warp, dissolve", size, _map_times(scene, params, maps, repeat), PAPER_WARP[name][i], maps.nbytes),
-        _row(name, "warp, nearest", size, _map_times(scene, replace(params, policy="nearest"), maps, repeat), None),
-        _row(name, "direct", size, _map_times(scene, replace(params, method="direct"), None, repeat), None),
-        _row(name, "frame (warp, dissolve)", size, frame, PAPER_FRAME[name][i]),
+        row(name, "warp, dissolve", size, map_times(scene, params, maps, repeat), PAPER_WARP[name][i], maps.nbytes),
+        row(name, "warp, nearest", size, map_times(scene, replace(params, policy="nearest"), maps, repeat), None),
+        row(name, "direct", size, map_times(scene, replace(params, method="direct"), None, repeat), None),
+        row(name, "frame (warp, dissolve)", size, frame, PAPER_FRAME[name][i]),
     ]
 
 
-def _ways(mesh: Mesh, size: int, i: int, repeat: int) -> list[dict[str, Any]]:
-    """Tables 2 to 5: grids of control points, light samples, rendered maps, maps made beforehand."""
-    from ibr_ref import models, shadows
+def by_samples(mesh: Mesh, size: int, repeat: int) -> list[dict[str, Any]]:
+    """Tables 2, 3 and 5: grids of control points, light samples, rendered maps."""
+    from ibr_ref import shadows
 
-    scene = models.shadow_stage(mesh, offset=(0.23, -0.31))
-    plain = shadows.Params(map_size=size)
+    i, scene, plain = SIZES.index(size), stage(mesh), shadows.Params(map_size=size)
     rows = []
-    for way, params in {
-        "warp 5 x 15": plain,
-        "warp 7 x 15": replace(plain, columns=7),
-        "warp, 5 samples": replace(plain, light_samples=5),
-        "warp, 9 samples": replace(plain, light_samples=9),
-    }.items():
-        maps = shadows.prepare(scene, params)
-        rows.append(
-            _row("kettle", way, size, _map_times(scene, params, maps, repeat), PAPER_KETTLE[way][i], maps.nbytes)
-        )
-    for way, count in {"direct": 1, "direct, 5 samples": 5, "direct, 9 samples": 9}.items():
+    for columns in (5, 7):
+        wide = replace(plain, columns=columns, light_samples=9)
+        maps = shadows.prepare(scene, wide)  # for nine samples, and so for fewer
+        for count in (1, 5, 9):
+            way = f"warp {columns} x 15" + (f", {count} samples" if count > 1 else "")
+            seconds = map_times(scene, replace(wide, light_samples=count), maps, repeat)
+            rows.append(row("kettle", way, size, seconds, PAPER_KETTLE[way][i], maps.nbytes))
+    for count in (1, 5, 9):
+        way = "direct" + (f", {count} samples" if count > 1 else "")
         params = replace(plain, method="direct", light_samples=count)
-        rows.append(_row("kettle", way, size, _map_times(scene, params, None, repeat), PAPER_KETTLE[way][i]))
-    for way, storage in {"grid, raw": "raw", "grid, compressed": "haar"}.items():
-        params = replace(plain, method="grid", grid_storage=storage)
-        grid = shadows.prepare_grid(scene, params)
-        rows.append(
-            _row("kettle", way, size, _map_times(scene, params, grid, repeat), PAPER_KETTLE[way][i], grid.nbytes)
-        )
+        rows.append(row("kettle", way, size, map_times(scene, params, None, repeat), PAPER_KETTLE[way][i]))
     return rows
 
 
-def _map_times(scene: Scene, params: Params, maps: Maps | MapGrid | None, repeat: int) -> tuple[float, float]:
+def from_grids(mesh: Mesh, size: int, repeat: int) -> list[dict[str, Any]]:
+    """Table 4: 32 x 32 maps made beforehand."""
+    from ibr_ref import shadows
+
+    i, scene, plain = SIZES.index(size), stage(mesh), shadows.Params(map_size=size, method="grid")
+    rows = []
+    for way, storage in {"grid, raw": "raw", "grid, compressed": "haar"}.items():
+        params = replace(plain, grid_storage=storage)
+        grid = shadows.prepare_grid(scene, params)
+        rows.append(row("kettle", way, size, map_times(scene, params, grid, repeat), PAPER_KETTLE[way][i], grid.nbytes))
+    return rows
+
+
+def softened(mesh: Mesh, size: int, repeat: int) -> list[dict[str, Any]]:
+    """Whole frames with a soft shadow: nine samples, rendered and warped, beside one map softened."""
+    from ibr_ref import shadows
+
+    scene, nine = stage(mesh), shadows.Params(map_size=size, light_samples=9)
+    maps = shadows.prepare(scene, nine)
+    direct = replace(nine, method="direct")
+    frames: dict[str, Callable[[], object]] = {
+        "direct, 9 samples": lambda: shadows.render(scene, direct, stages=False),
+        "warp, 9 samples": lambda: shadows.render(scene, nine, maps=maps, stages=False),
+    }
+    for method in ("convolution", "pcss"):
+        soft = shadows.SoftParams(method=method, map_size=size)
+        frames[method] = partial(shadows.render_soft, scene, soft, stages=False)
+    return [
+        row("kettle", f"frame ({way})", size, best_and_median(frame, repeat), None) for way, frame in frames.items()
+    ]
+
+
+def map_times(scene: Scene, params: Params, maps: Maps | MapGrid | None, repeat: int) -> tuple[float, float]:
+    """Seconds for the map, or for one of each light sample: best and median."""
     from ibr_ref import shadows
 
     return best_and_median(lambda: shadows.shadow_maps(scene, params, maps=maps), repeat)
 
 
-def _row(
+def row(
     name: str, way: str, size: int, seconds: tuple[float, float], paper: int | None, nbytes: int | None = None
 ) -> dict[str, Any]:
+    """A line of the bench; paper: milliseconds."""
     best, median = (1e3 * s for s in seconds)
     return {
         "object": name,

@@ -32,7 +32,7 @@ def times(repeat: int, msr: Path | None) -> list[dict[str, Any]]:
 
     rows = []
     with progress(len(RIG_SIZES) + 3) as step:
-        for name, scene, params in _scenes(msr):
+        for name, scene, params in scenes(msr):
             step(name)
             points = sum(int(image.arrays[2].sum()) for image in scene.images)
             row: dict[str, Any] = {"scene": name, "points": points}
@@ -45,7 +45,7 @@ def times(repeat: int, msr: Path | None) -> list[dict[str, Any]]:
     return rows
 
 
-def _scenes(msr: Path | None) -> Any:
+def scenes(msr: Path | None) -> Any:
     """Name, scene and parameters of every row: made one after the other, as the last ones are large."""
     from ibr_ref import models, splatting
     from ibr_ref.scene import Camera, Light

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any
 from ibr_ref.cli.demo.picture import SIZE, Picture, on_canvas
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from ibr_ref.shadows import Maps, Params, Scene
 
 TITLE = "Shadows by image warping (Kang & Ihm 2002), 640 x 480, maps of 512 x 512"
@@ -94,22 +97,34 @@ def _draw_grid(image: Any, points: Any) -> None:
 
 
 def _warped_and_rendered() -> Any:
-    """The warped map, the rendered one, and their difference: red where only the first is dark, blue where the second."""
+    return on_canvas(warped_and_rendered(*_stage("horse", 1)))
+
+
+def warped_and_rendered(scene: Scene, params: Params, maps: Maps) -> NDArray[np.float64]:
+    """(474, 400, 3) of one light sample's map: warped, rendered, and where they differ, around the shadow.
+
+    The difference is red where only the warped map is dark, blue where only the rendered one is. Maps of 400 or more.
+    """
     import numpy as np
 
     from ibr_ref import shadows
 
-    scene, params, maps = _stage("horse", 1)
     warped = shadows.shadow_maps(scene, params, maps=maps)[0]
     rendered = shadows.shadow_maps(scene, replace(params, method="direct"))[0]
     where = np.argwhere((warped > 0) | (rendered > 0))
-    top, left = np.clip(where.mean(axis=0).astype(int) - (75, 200), 0, (512 - 150, 512 - 400))
+    size = len(warped)
+    top, left = np.clip(where.mean(axis=0).astype(int) - (75, 200), 0, (size - 150, size - 400))
     window = np.s_[top : top + 150, left : left + 400]
     a, b = warped[window], rendered[window]
     greys = [1.0 - 0.85 * m[..., None].repeat(3, axis=2) for m in (a, b)]
-    both = np.minimum(a, b)
-    difference = np.stack(
-        [1.0 - both - 0.9 * (b - both), 1.0 - np.maximum(a, b), 1.0 - both - 0.9 * (a - both)], axis=2
-    )
     gap = np.full((12, 400, 3), 0.9)
-    return on_canvas(np.concatenate([greys[0], gap, greys[1], gap, np.clip(difference, 0.0, 1.0)]))
+    return np.concatenate([greys[0], gap, greys[1], gap, difference(a, b)])
+
+
+def difference(ours: NDArray[np.float64], theirs: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(H, W, 3) two shadows on white: dark where both are, red where ours alone is, blue where theirs alone is."""
+    import numpy as np
+
+    both = np.minimum(ours, theirs)
+    red, blue = ours - both, theirs - both
+    return np.clip(np.stack([1.0 - both - 0.9 * blue, 1.0 - both - red - blue, 1.0 - both - 0.9 * red], axis=2), 0, 1)

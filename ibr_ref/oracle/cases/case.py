@@ -8,6 +8,7 @@ from typing import Any
 
 from ibr_ref import displacement, shadows, splatting
 from ibr_ref.io import Frame
+from ibr_ref.scene import checks
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -30,6 +31,15 @@ class Case:
     """The method's Params."""
     inputs: dict[str, Any] = field(default_factory=dict)
     """What else is given: "maps" (shadows.Maps), "normals" (uint8 (H, W, 3), one an image, of splatting)."""
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for what no referee judges: the systems that the papers compare with."""
+        if self.method == "displacement":
+            checks.choice("method", self.params.method, ("protruded",))
+        elif self.method == "splatting":
+            checks.choice("shape", self.params.shape, ("square", "disc"))
+        else:
+            checks.choice("method", self.params.method, ("warp", "direct"))
 
     @cached_property
     def frame(self) -> Frame:

@@ -217,10 +217,8 @@ def direct() -> Case:
 
 def masks() -> Case:
     """Rendered masks."""
-    about = "Masks of 3 x 3 samples a texel rendered for each of five light samples."
-    return _case(
-        "masks", "typical", about, _scene(), _params(method="direct", light_samples=5, map_samples=3), profile="gl"
-    )
+    about = "Masks rendered for each of five light samples."
+    return _case("masks", "typical", about, _scene(), _params(method="direct", light_samples=5), profile="gl")
 
 
 def filtered() -> Case:
@@ -235,14 +233,19 @@ def filtered() -> Case:
         ],
     )
     return _case(
-        "filtered", "adversarial", about, scene, _params(method="direct", content="depth", pcf=True, bias=2e-3)
+        "filtered",
+        "adversarial",
+        about,
+        scene,
+        _params(method="direct", content="depth", pcf=True, bias=2e-3),
+        profile="vulkan",
     )
 
 
 def coarse() -> Case:
     """Comparisons of bytes."""
     about = "Depths rendered anew and compared in 8 bits: many are equal."
-    params = _params(method="direct", content="depth", quantize=8, bias=6e-3)
+    params = _params(method="direct", content="depth", quantize=8, bias=3e-3)
     return _case("coarse", "adversarial", about, _scene(), params, profile="gl")
 
 

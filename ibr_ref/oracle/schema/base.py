@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, ConfigDict, Field
+
+from ibr_ref.scene import checks
 
 Vector2 = tuple[float, float]
 Vector3 = tuple[float, float, float]
@@ -30,6 +33,19 @@ class Model(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="forbid", strict=True, allow_inf_nan=False, use_attribute_docstrings=True
     )
+
+
+def values(model: type[Model], params: Any) -> dict[str, Any]:
+    """The fields of a method's Params that its model has.
+
+    The others belong to systems that are compared with, of which there are no cases: raises ValueError where one has
+    another value than its default.
+    """
+    own = {field.name: field for field in fields(params)}
+    for name, field in own.items():
+        if name not in model.model_fields and getattr(params, name) != field.default:
+            raise checks.reject(name, getattr(params, name), f"{field.default!r} in a case for ports")
+    return {name: getattr(params, name) for name in own if name in model.model_fields}
 
 
 class StoredFile(Model):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any, Literal
 
 from pydantic import Field
@@ -20,6 +19,7 @@ from ibr_ref.oracle.schema.base import (
     Vector4,
     numbers,
     texels,
+    values,
 )
 from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
 from ibr_ref.oracle.schema.light import LightFile, build_light, describe_light
@@ -45,7 +45,7 @@ class DisplacementParams(Model):
     """S, samples towards the light; 0: no self-shadow."""
     shadow_bias: float
     """In units of h."""
-    method: Literal["protruded", "exact", "relief", "texture"]
+    method: Literal["protruded"]
 
 
 class PatchSpace(Model):
@@ -94,7 +94,7 @@ class DisplacementScene(Model):
 
 def describe_params(params: displacement.Params) -> DisplacementParams:
     """The parameters as a document."""
-    return DisplacementParams(**asdict(params))
+    return DisplacementParams(**values(DisplacementParams, params))
 
 
 def build_params(file: DisplacementParams) -> displacement.Params:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
 
 from ibr_ref import shadows
-from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Matrix2x3, Model, Stored, Vector2, Vector3, numbers
+from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Matrix2x3, Model, Stored, Vector2, Vector3, numbers, values
 from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
 from ibr_ref.scene import AreaLight, Mesh, checks
 from ibr_ref.shadows.samples import samples_of, seen_offset
@@ -37,11 +36,7 @@ class ShadowsParams(Model):
     light_samples: Literal[1, 5, 9] | tuple[Vector3, ...]
     """1, 5 or 9, or world positions; `scene.light_samples` lists them all."""
     accumulation: Literal["float", "unorm8"]
-    method: Literal["warp", "direct", "grid"]
-    grid_size: int
-    grid_mix: bool
-    grid_storage: Literal["raw", "haar"]
-    grid_threshold: float
+    method: Literal["warp", "direct"]
 
 
 class MeshFile(Model):
@@ -118,10 +113,10 @@ class ShadowsScene(Model):
 
 def describe_params(params: shadows.Params) -> ShadowsParams:
     """The parameters as a document."""
-    values = {field.name: getattr(params, field.name) for field in fields(params)}
+    chosen = values(ShadowsParams, params)
     if isinstance(params.light_samples, np.ndarray):
-        values["light_samples"] = numbers(params.light_samples)
-    return ShadowsParams(**values)
+        chosen["light_samples"] = numbers(params.light_samples)
+    return ShadowsParams(**chosen)
 
 
 def build_params(file: ShadowsParams) -> shadows.Params:

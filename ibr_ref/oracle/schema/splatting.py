@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import Any, Literal
 
 import numpy as np
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ibr_ref import splatting
-from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Model, Stored, Vector3, numbers, texels
+from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Model, Stored, Vector3, numbers, texels, values
 from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
 from ibr_ref.oracle.schema.light import LightFile, build_light, describe_light
 from ibr_ref.scene import DepthImage, checks
@@ -58,7 +57,7 @@ class SplattingScene(Model):
 
 def describe_params(params: splatting.Params) -> SplattingParams:
     """The parameters as a document."""
-    return SplattingParams(**asdict(params))
+    return SplattingParams(**values(SplattingParams, params))
 
 
 def build_params(file: SplattingParams) -> splatting.Params:

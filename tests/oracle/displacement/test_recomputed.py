@@ -8,7 +8,7 @@ import pytest
 from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.referees.displacement.hits import hits_of
 from ibr_ref.oracle.referees.displacement.image import candidates_of
-from ibr_ref.oracle.referees.displacement.replay import Port, light_input, march_input, reference_faces, shade_input
+from ibr_ref.oracle.referees.displacement.replay import Port, light_input, march_input, shade_input
 from ibr_ref.oracle.referees.displacement.shown import lighted, shades_of
 from tests.oracle.displacement.drawn import SMALL, case, reference
 
@@ -27,7 +27,7 @@ def port(request: pytest.FixtureRequest) -> Port:
 
 def test_corners(port: Port) -> None:
     for name, field in (("vertex.clip", "clip"), ("vertex.patch", "patch")):
-        ours = np.concatenate([getattr(each, field).value for each in reference_faces(port)])
+        ours = np.concatenate([getattr(each, field).value for each in port.candidates.faces])
         assert near(ours, port.handed[name])
 
 

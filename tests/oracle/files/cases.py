@@ -46,7 +46,7 @@ def displacement_parallel() -> Case:
         camera=polygons.parallel_camera(width=24, height=18),
         light=Light(direction=(0.1, 0.7, 3.0)),
     )
-    return case("parallel", "displacement", scene, displacement.Params(faces="base", depth="polygon", method="relief"))
+    return case("parallel", "displacement", scene, displacement.Params(faces="base", depth="polygon"))
 
 
 def _axis_angle(width: int, height: int) -> Camera:

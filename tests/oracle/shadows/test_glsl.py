@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -11,10 +12,8 @@ from tests.oracle.shadows.judged import SMALL, Arrays, case, complaints, image, 
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 
+from tests.ports.described import described  # noqa: E402
 from tests.ports.shadows import Port  # noqa: E402
-
-PORTED = tuple(name for name in SMALL if name != "shadows-masks")
-"""The port renders masks of one sample a texel, and refuses others; given ones it warps as they are."""
 
 
 @pytest.fixture(scope="module")
@@ -25,14 +24,17 @@ def port() -> Iterator[Port]:
         pytest.skip(f"no headless OpenGL 4.5: {error}")
 
 
-def read_back(port: Port, name: str) -> Arrays:
-    described = case(name)
-    frame = port.render(described.scene, described.params, maps=described.inputs.get("maps"))
+def read_back(port: Port, name: str, **changes: Any) -> Arrays:
+    """The port's frame of an exported case, or of one with a scene that is changed under the same maps."""
+    given = case(name)
+    scene = replace(given.scene, **changes)
+    exported = described("shadows", scene, given.params, **given.inputs)
+    frame = port.render(exported.scene, exported.params)
     stages = {array: value for array, value in frame.stages.items() if not array.startswith("raster.")}
     return {**stages, "color": frame.color, "depth": frame.depth}
 
 
-@pytest.mark.parametrize("name", PORTED)
+@pytest.mark.parametrize("name", SMALL)
 def test_the_port_is_not_accused(port: Port, name: str) -> None:
     arrays = read_back(port, name)
     judged = [*stages(name, arrays, "gl"), image(name, picture(arrays), "gl")]
@@ -42,8 +44,8 @@ def test_the_port_is_not_accused(port: Port, name: str) -> None:
 
 def test_its_maps_are_not_accused(port: Port) -> None:
     for name in ("shadows-box", "shadows-depths"):
-        described = case(name)
-        maps = port.maps(described.scene, described.params, described.inputs["maps"].positions)
+        exported = described("shadows", case(name).scene, case(name).params, **case(name).inputs)
+        maps = port.maps(exported.scene, exported.params)
         assert complaints(stages(name, {"maps.image": maps}, "gl")) == []
 
 
@@ -52,16 +54,13 @@ def test_its_bytes_are_not_accused(port: Port) -> None:
     assert complaints([image("shadows-box", in_bytes(arrays), "gl")]) == []
 
 
-def test_a_broken_port_is_accused(port: Port) -> None:
+@pytest.mark.parametrize(
+    ("changes", "stage"),
+    [({"offset": (0.351, -0.4)}, "warp"), ({"ambient": 0.204}, "resolve")],
+    ids=["offset", "ambient"],
+)
+def test_a_broken_port_is_accused(port: Port, changes: dict[str, Any], stage: str) -> None:
     """The port with an object that is a little off, and with a brighter shadow."""
-    described = case("shadows-box")
-    maps = described.inputs["maps"]
-    for scene, stage in (
-        (replace(described.scene, offset=(0.351, -0.4)), "warp"),
-        (replace(described.scene, ambient=0.204), "resolve"),
-    ):
-        frame = port.render(scene, described.params, maps=maps)
-        arrays = {k: v for k, v in frame.stages.items() if not k.startswith("raster.")}
-        arrays |= {"color": frame.color, "depth": frame.depth}
-        assert stage in {j.stage for j in stages("shadows-box", arrays, "gl") if j.wrong.any()}
-        assert image("shadows-box", picture(arrays), "gl").wrong.any()
+    arrays = read_back(port, "shadows-box", **changes)
+    assert stage in {j.stage for j in stages("shadows-box", arrays, "gl") if j.wrong.any()}
+    assert image("shadows-box", picture(arrays), "gl").wrong.any()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.accept.bounded import exact
 from ibr_ref.oracle.cases.shadows import CASES
 from ibr_ref.oracle.device import IEEE32, PROFILES
 from ibr_ref.oracle.referees.shadows.accumulate import accumulated
@@ -86,8 +87,6 @@ def test_sums_are_the_reference_s(name: str) -> None:
     made = Inputs(case(name), IEEE32, reference(name))
     own = made.own("project.shadow")
     assert own is not None
-    from ibr_ref.oracle.accept.bounded import exact
-
     sums = accumulated([exact(shadow, IEEE32) for shadow in own], unorm8=False)
     np.testing.assert_allclose(sums.value, reference(name)["accumulate.shadow"], rtol=1e-12)
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import cached_property, reduce
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -62,6 +62,13 @@ class Constants:
     transforms: list[Matrix]
     """From patch to clip space: world from patch, view from world, clip from view."""
     textures: Textures
+
+    @cached_property
+    def combined(self) -> tuple[Matrix, Matrix]:
+        """Clip from world and clip from patch, multiplied on the device."""
+        world, view, clip = self.transforms
+        clip_from_world = _product(clip, view)
+        return clip_from_world, _product(clip_from_world, world)
 
     @property
     def device(self) -> Device:
@@ -163,12 +170,9 @@ def clip_point(constants: Constants, point: Sequence[Bounded]) -> Vector:
     The value is the first way's, as the reference's; the error is the largest of the three ways'.
     """
     world, view, clip = constants.transforms
-    clip_from_world = _product(clip, view)
-    ways = [
-        apply(clip, apply(view, apply(world, point))),
-        apply(clip_from_world, apply(world, point)),
-        apply(_product(clip_from_world, world), point),
-    ]
+    clip_from_world, clip_from_patch = constants.combined
+    at = apply(world, point)
+    ways = [apply(clip, apply(view, at)), apply(clip_from_world, at), apply(clip_from_patch, point)]
     return [
         Bounded(
             x.value, reduce(np.maximum, [x.error, *(o.error + np.abs(o.value - x.value) for o in others)]), x.device

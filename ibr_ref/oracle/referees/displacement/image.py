@@ -18,7 +18,7 @@ from ibr_ref.oracle.referees.displacement.constants import Constants, constants_
 from ibr_ref.oracle.referees.displacement.hits import Hits, hits_of
 from ibr_ref.oracle.referees.displacement.raster import Fragments, fragments_of
 from ibr_ref.oracle.referees.displacement.shown import lighted, shades_of, winners_of
-from ibr_ref.oracle.referees.displacement.vertex import faces_of, triangles_of
+from ibr_ref.oracle.referees.displacement.vertex import Faces, faces_of, triangles_of
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
@@ -32,6 +32,7 @@ class Candidates:
     """What the case alone says of the stages up to the depth test."""
 
     constants: list[Constants]
+    faces: list[Faces]
     fragments: Fragments
     hits: Hits
     """Of all fragments."""
@@ -73,12 +74,18 @@ def candidates_of(case: Case, device: Device) -> Candidates:
 def _candidates(case: Case, device: Device) -> Candidates:
     scene, params, camera = case.scene, case.params, case.scene.camera
     constants = constants_of(scene, device)
-    triangles = [triangles_of(faces_of(each, params)) for each in constants]
-    fragments = fragments_of(triangles, device, camera.width, camera.height)
+    faces = [faces_of(each, params) for each in constants]
+    fragments = fragments_of([triangles_of(each) for each in faces], device, camera.width, camera.height)
     hits, lost = hits_of(constants, params, fragments)
     found = winners_of(hits, len(constants), camera.width * camera.height)
     return Candidates(
-        constants=constants, fragments=fragments, hits=hits, possible=found.possible, empty=found.empty, lost=lost
+        constants=constants,
+        faces=faces,
+        fragments=fragments,
+        hits=hits,
+        possible=found.possible,
+        empty=found.empty,
+        lost=lost,
     )
 
 

@@ -22,7 +22,7 @@ from ibr_ref.oracle.referees.displacement.hits import CHUNK, Hits, joined_hits, 
 from ibr_ref.oracle.referees.displacement.image import Candidates, candidates_of
 from ibr_ref.oracle.referees.displacement.raster import Fragments, fragments_of
 from ibr_ref.oracle.referees.displacement.shown import Shades
-from ibr_ref.oracle.referees.displacement.vertex import Faces, faces_of, triangles_of
+from ibr_ref.oracle.referees.displacement.vertex import triangles_of
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
@@ -88,14 +88,9 @@ class Port:
         return np.asarray(self.ints(name)[pixel] == legal, np.bool_)
 
 
-def reference_faces(port: Port) -> list[Faces]:
-    """Of each polygon."""
-    return [faces_of(each, port.case.params) for each in port.constants]
-
-
 def raster_input(port: Port) -> tuple[Fragments, tuple[str, ...]]:
     """The candidates of the port's own vertices, where it has as many as the reference."""
-    faces = reference_faces(port)
+    faces = port.candidates.faces
     count = sum(len(each.patch.value) for each in faces)
     if "vertex.clip" not in port.handed or len(port.handed["vertex.clip"]) != count:
         return port.candidates.fragments, ()

@@ -25,7 +25,6 @@ from ibr_ref.oracle.referees.displacement.replay import (
     not_covered,
     raster_field,
     raster_input,
-    reference_faces,
     shade_field,
     shade_input,
 )
@@ -105,7 +104,7 @@ def _picture(port: Port, stage: str, replayed: tuple[str, ...], verdict: Verdict
 
 
 def _vertex(port: Port) -> Judgement:
-    faces = reference_faces(port)
+    faces = port.candidates.faces
     legal = {"vertex.clip": joined([f.clip for f in faces]), "vertex.patch": joined([f.patch for f in faces])}
     names = port.names("vertex")
     count = len(legal["vertex.clip"].value)

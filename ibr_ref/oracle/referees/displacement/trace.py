@@ -24,7 +24,6 @@ from ibr_ref.oracle.referees.displacement.replay import (
     light_input,
     march_input,
     raster_input,
-    reference_faces,
     shade_input,
 )
 from ibr_ref.oracle.referees.displacement.shade import slope
@@ -88,7 +87,7 @@ def _row(step: str, legal: Bounded, found: NDArray[np.float64] | None) -> TraceR
 
 
 def _vertex(port: Port, index: int) -> Iterator[TraceRow]:
-    faces = reference_faces(port)
+    faces = port.candidates.faces
     for name, legal in (
         ("vertex.patch", joined([f.patch for f in faces])),
         ("vertex.clip", joined([f.clip for f in faces])),

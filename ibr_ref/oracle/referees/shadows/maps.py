@@ -114,7 +114,7 @@ def _depths(found: Drawn, reference: Floats, device: Device) -> Map:
     nearest, error = np.full(flat.size, np.inf), np.zeros(flat.size)
     np.minimum.at(nearest, pixel, off)
     mine = off == nearest[pixel]
-    np.maximum.at(error, pixel[mine], depth.error[mine])
+    np.maximum.at(error, pixel[mine], np.minimum(depth.error[mine], 1.0))  # depths lie in [0, 1]
     error[flat == 1.0] = 0.0
     firm = Bounded(reference, error.reshape(reference.shape), device)
     low, high = (a.reshape(reference.shape) for a in (low, high))
@@ -129,8 +129,8 @@ def _hull(found: Drawn, texels: int) -> tuple[Floats, Floats]:
     shown = found.winners.possible
     pixel, depth = found.pixel[shown], found.depth[shown]
     low, high = np.ones(texels), np.where(found.winners.empty, 1.0, 0.0)
-    np.minimum.at(low, pixel, depth.low)
-    np.maximum.at(high, pixel, depth.high)
+    np.minimum.at(low, pixel, np.maximum(depth.low, 0.0))
+    np.maximum.at(high, pixel, np.minimum(depth.high, 1.0))
     return (np.zeros(texels), np.ones(texels)) if found.wild else (low, high)
 
 

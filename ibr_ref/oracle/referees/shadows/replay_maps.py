@@ -84,7 +84,7 @@ def spots(given: Inputs) -> Judgement | None:
     shape = np.shape(given.handed[next(iter(own))])
     return judgement(
         "warp",
-        "axis",
+        "place",
         list(own),
         [right[name].reshape(shape) for name in own],
         np.array(width).reshape(shape),

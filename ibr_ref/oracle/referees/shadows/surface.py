@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -147,7 +147,7 @@ def see(case: Any, device: Device) -> Seen:
     source = cut.source[shown.triangle]
     values = perspective(triangles, shown, cut.attributes, cut.w)
     cosine, other, edge_on = _lit(scene, objects.normals(), source, values[:3])
-    return Seen(
+    seen = Seen(
         pixel=pixel[won.possible],
         triangle=source,
         caster=objects.caster[source],
@@ -162,12 +162,38 @@ def see(case: Any, device: Device) -> Seen:
         shape=(height, width),
         inside=np.asarray((shown.weights >= 0.0).all(axis=1)),
     )
+    return _bounded(seen)
+
+
+def _bounded(seen: Seen) -> Seen:
+    """Without fragments of which nothing is known, such as those of triangles seen edge on: their pixels are wild."""
+    numbers = [seen.depth, *seen.world, *seen.color, seen.cosine, seen.other]
+    known = np.logical_and.reduce([np.isfinite(n.value + n.error) for n in numbers])
+    if known.all():
+        return seen
+    wild = seen.wild.copy()
+    wild[seen.pixel[~known]] = True
+    return replace(
+        seen,
+        pixel=seen.pixel[known],
+        triangle=seen.triangle[known],
+        caster=seen.caster[known],
+        depth=seen.depth[known],
+        world=[axis[known] for axis in seen.world],
+        color=[channel[known] for channel in seen.color],
+        cosine=seen.cosine[known],
+        other=seen.other[known],
+        edge_on=seen.edge_on[known],
+        wild=wild,
+        inside=seen.inside[known],
+    )
 
 
 def _only(found: Fragments, kept: Bools) -> Fragments:
     return Fragments(**{field.name: getattr(found, field.name)[kept] for field in fields(found)})
 
 
+@np.errstate(invalid="ignore")
 def _colors(objects: Objects, source: Ints, varying: Sequence[Bounded]) -> list[Bounded]:
     """(n,) channels: of meshes with one colour as it is, which a port may interpolate all the same, else interpolated.
 
@@ -181,6 +207,8 @@ def _colors(objects: Objects, source: Ints, varying: Sequence[Bounded]) -> list[
     return [p.where(objects.plain[source], v) for p, v in zip(plain, channels, strict=True)]
 
 
+# Where nothing is known of a fragment's place, infinite errors become NaN; such fragments are sorted out.
+@np.errstate(invalid="ignore")
 def _lit(
     scene: Any, normals: Sequence[Bounded], source: Ints, world: Sequence[Bounded]
 ) -> tuple[Bounded, Bounded, Bools]:

@@ -25,9 +25,6 @@ from ibr_ref.oracle.referees.shadows.transform import gamma
 
 Floats = NDArray[np.float64]
 
-ANY = 2.0**128
-"""Larger than any float32 (IEEE 754-2019, table 3.5: emax = 127), and, unlike infinity, 0 times it is 0."""
-
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
@@ -79,13 +76,11 @@ class Mixer:
         largest = s.max(axis=1)
         if not largest.any():
             return known
-        with np.errstate(invalid="ignore"):
-            return np.asarray(known + np.where(largest[t] > 0.0, 3.0 * self.found.error * largest[t], 0.0))
+        return np.asarray(known + np.where(largest[t] > 0.0, 3.0 * self.found.error * largest[t], 0.0))
 
     def moved(self, x: Floats, y: Floats) -> Floats:
         """(n,) what the moves make of a function with this gradient, (n,) each."""
-        with np.errstate(invalid="ignore"):
-            found = np.abs(x) * self.moves[0] + np.abs(y) * self.moves[1]
+        found = np.abs(x) * self.moves[0] + np.abs(y) * self.moves[1]
         return np.where(np.isnan(found), np.inf, found)
 
 
@@ -156,13 +151,32 @@ def _evaluation(triangles: Triangles, a: Floats, device: Device, area: Floats) -
     return np.asarray(2.0 * (once * (1.0 + condition) + whole) * across + whole * np.abs(a).max(axis=1))
 
 
+# What is unknown of triangles without an area comes out as NaN or infinity, and is told as an infinite error.
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def linear(triangles: Triangles, found: Fragments, corner: Bounded) -> Bounded:
     """(n,) a varying that is linear in the window, from its values (T, 3)."""
     plane, mixer, t = Plane.of(triangles, corner), Mixer.of(triangles, found), found.triangle
     moved = mixer.moved(plane.gradient[0][t], plane.gradient[1][t])
-    return _known(plane.at(found), moved + plane.own(mixer), corner.device)
+    return _between_corners(triangles, found, corner, Bounded(plane.at(found), moved + plane.own(mixer), corner.device))
 
 
+def _between_corners(triangles: Triangles, found: Fragments, corner: Bounded, value: Bounded) -> Bounded:
+    """No farther off than the corners' values, between which a device that covers and interpolates by one triangle stays.
+
+    That is all that is known of a triangle without an area, which other corners may give one.
+    """
+    t, error = found.triangle, np.broadcast_to(corner.error, corner.value.shape)
+    low, high = (corner.value - error).min(axis=1)[t], (corner.value + error).max(axis=1)[t]
+    known = np.isfinite(value.value)
+    at = np.where(known, value.value, (low + high) / 2.0)
+    off = np.where(known & ~np.isnan(value.error), value.error, np.inf)
+    if not triangles.unsnapped:
+        most = np.maximum(high - at, at - low)
+        off = np.minimum(off, most + gamma(value.device, 6.0, 2.0) * np.maximum(np.abs(low), np.abs(high)))
+    return Bounded(at, off, value.device)
+
+
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def perspective(triangles: Triangles, found: Fragments, corners: Sequence[Bounded], w: Bounded) -> list[Bounded]:
     """(n,) each of the varyings by their values (T, 3), w (T, 3) > 0.
 
@@ -182,13 +196,7 @@ def perspective(triangles: Triangles, found: Fragments, corners: Sequence[Bounde
         above = Plane.of(triangles, Bounded(corner.value * inverse, both, device))
         u = above.at(found) / D
         moved = mixer.moved(*(above.gradient[k][t] - u * gradient_D[k] for k in range(2)))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            error = (moved + above.own(mixer) + np.abs(u) * own_D) / room + device.quotient * UNIT * np.abs(u)
-        result.append(_known(u, np.where(room > 0.0, error, np.inf), device))
+        error = (moved + above.own(mixer) + np.abs(u) * own_D) / room + device.quotient * UNIT * np.abs(u)
+        error = np.where((room > 0.0) & np.isfinite(error), error, np.inf)
+        result.append(_between_corners(triangles, found, corner, Bounded(u, error, device)))
     return result
-
-
-def _known(value: Floats, error: Floats, device: Device) -> Bounded:
-    """(n,) with the bounds; any number where there is none: a triangle seen edge-on has no weights, but may be drawn."""
-    known = np.isfinite(value) & np.isfinite(error)
-    return Bounded(np.where(known, value, 0.0), np.where(known, error, ANY), device)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ibr_ref.oracle.accept.bounded import exact, uploaded
 from ibr_ref.oracle.judgement import TraceRow
-from ibr_ref.oracle.referees.shadows import maps, places
+from ibr_ref.oracle.referees.shadows import maps, places, replay_maps
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.trace.rows import number, told
 
@@ -78,7 +78,5 @@ def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRo
 
 
 def _legal(given: Inputs, array: str, index: tuple[int, ...]) -> bool:
-    from ibr_ref.oracle.referees.shadows import replay_maps
-
     found = (replay_maps.images if array == "maps.image" else replay_maps.warped)(given)
     return found is None or not bool(found.wrong[index])

@@ -1,0 +1,66 @@
+"""What the compared systems share: the view ray below the polygon, and what a sample says of the map there.
+
+Their polygon is the *top* of the volume. With D = 1 - H and the fragment's point C, the view ray at depth d is
+q(d) = C_uv - d (v_uv / v_h), v = e - C. Samples beside a map that does not repeat are empty: a ray that leaves the map
+before it meets the surface is discarded (the gaps of the paper's figure 3). Results are kept one a pixel, as a polygon's
+base face covers each pixel at most once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ibr_ref.jit import device
+from ibr_ref.pipeline.sampling import fetch
+
+
+@device
+def in_domain(u, v, bounded):
+    """Whether there is a map at (u, v)."""
+    return not bounded or (0.0 <= u <= 1.0 and 0.0 <= v <= 1.0)
+
+
+@device
+def sample(repeat, texels, columns, rows, bounded, u, v, d):
+    """Whether the sample is at or below the surface; its margin |d - D| (infinite at d = 0 and d = 1); H, 0 outside."""
+    if not in_domain(u, v, bounded):
+        return False, np.inf, 0.0
+    height = fetch(texels, columns, rows, repeat, u, v)
+    depth = 1.0 - height
+    return d >= depth, (abs(d - depth) if 0.0 < d < 1.0 else np.inf), height
+
+
+@device
+def border(u, v, bounded, nearest):
+    """The smaller of `nearest` and the distance in (u, v) from the border of a map that ends there."""
+    if not bounded:
+        return nearest
+    return min(nearest, abs(min(min(u, 1.0 - u), min(v, 1.0 - v))))
+
+
+@device
+def view_ray(points, pixel, eye):
+    """(u, v) on the polygon, v_u / v_h and v_v / v_h, and whether there is a ray: a fragment, and an eye above."""
+    u, v = points[0, pixel], points[1, pixel]
+    to_h = eye[2] - eye[3] * points[2, pixel]
+    if not to_h > 0.0:
+        return u, v, 0.0, 0.0, False
+    return u, v, (eye[0] - eye[3] * u) / to_h, (eye[1] - eye[3] * v) / to_h, True
+
+
+@device
+def distance_to_eye(constants, along_u, along_v):
+    """World length of the view ray from depth 1 up to the polygon: |(v_u/v_h) U + (v_v/v_h) V + s n|."""
+    a = constants.axes
+    x = along_u * a[0, 0] + along_v * a[1, 0] + a[2, 0]
+    y = along_u * a[0, 1] + along_v * a[1, 1] + a[2, 1]
+    z = along_u * a[0, 2] + along_v * a[1, 2] + a[2, 2]
+    return np.sqrt(x * x + y * y + z * z)
+
+
+@device
+def keep(found, pixel, step, u, v, d, bounded):
+    """Write a hit at depth d, after so many steps; one beside the map stays discarded."""
+    if in_domain(u, v, bounded):
+        found.linear_index[pixel], found.hit_index[pixel] = step, step
+        found.u[pixel], found.v[pixel], found.h[pixel] = u, v, -d

@@ -1,0 +1,29 @@
+"""Parallax mapping with offset limiting (Welsh 2004): one fetch, one step along the polygon.
+
+T = C + H(C) s w_xy, w the unit vector to the eye in the polygon's own frame: not divided by w's height, so that the offset
+never exceeds the height itself. Nothing is displaced: the hit lies on the polygon, at the texture coordinates T.
+"""
+
+from __future__ import annotations
+
+from ibr_ref.displacement.below import distance_to_eye, keep, view_ray
+from ibr_ref.jit import device, kernel, prange
+from ibr_ref.pipeline.sampling import fetch
+
+
+@device
+def _offset(repeat, points, pixel, constants, texels, columns, rows, found, fetches):
+    u, v, along_u, along_v, seen = view_ray(points, pixel, constants.eye)
+    if not seen:
+        return
+    height = fetch(texels, columns, rows, repeat, u, v) * constants.scale
+    length = distance_to_eye(constants, along_u, along_v)  # of w / w_h: so (U*.w, V*.w) is (along_u, along_v) / length
+    fetches[pixel] = 1
+    keep(found, pixel, 0, u + height * along_u / length, v + height * along_v / length, 0.0, repeat is None)
+
+
+@kernel
+def welsh_search(repeat, points, constants, texels, columns, rows, found, fetches):
+    """Offsets of all pixels."""
+    for pixel in prange(len(fetches)):
+        _offset(repeat, points, pixel, constants, texels, columns, rows, found, fetches)
