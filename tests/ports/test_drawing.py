@@ -15,7 +15,7 @@ from ibr_ref import oracle
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-PORTS = ("__main__", "case_folder", "displacement", "gl", "shadow_maps", "shadows", "splatting")
+PORTS = ("__main__", "case_folder", "displacement", "gl", "patch_frame", "shadow_maps", "shadows", "splatting")
 
 
 @pytest.mark.parametrize("name", PORTS)
