@@ -23,9 +23,16 @@ def main() -> None:
     """Read, draw, write."""
     if len(sys.argv) != 3:
         sys.exit("usage: python -m tests.ports CASE PORT")
-    case = read_case(Path(sys.argv[1]))
     try:
-        frame = draw(case)
+        case = read_case(Path(sys.argv[1]))
+    except (OSError, KeyError, ValueError) as error:
+        sys.exit(f"{sys.argv[1]}: is no case that `ibr-ref export` wrote ({error})")
+    try:
+        device = gl.create_device()
+    except Exception as error:  # of moderngl, or of the loader that looks for EGL
+        sys.exit(f"no headless OpenGL 4.5 (Debian: libegl1 libgl1-mesa-dri): {error}")
+    try:
+        frame = draw(case, device)
     except ValueError as error:
         sys.exit(f"{case.name} is not ported: {error}")
     write(frame, case, Path(sys.argv[2]))

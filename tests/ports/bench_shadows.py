@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from ibr_ref.shadows.prepared import texels_at, view_of
 from ibr_ref.shadows.samples import samples_of, seen_offset
 from ibr_ref.shadows.warp import locate, warp_stage
 from tests.ports.bench_splatting import BLOCKS, COUNTED, WARM_UP, in_blocks
+from tests.ports.described import described
 from tests.ports.shadows import Port
 
 COW = Path(__file__).resolve().parents[3] / "shared" / "data" / "models" / "cow.obj"
@@ -92,9 +94,8 @@ def measure(
 ) -> None:
     """Print the rows of one pass: the maps of all light samples, or the whole frame."""
     kinds = {"GLSL": "f1"} if maps is None else {"GLSL, bytes": "f1", "GLSL, floats": "f4"}
-    prepared = {
-        name: port.prepare(scene, params, maps=maps, stages=False, texels=texels) for name, texels in kinds.items()
-    }
+    given = exported(scene, params, maps)
+    prepared = {name: port.prepare(given, params, stages=False, texels=texels) for name, texels in kinds.items()}
     contenders: Contenders = {name: each.seconds if whole else each.map_seconds for name, each in prepared.items()}
     if whole:
         contenders["ibr_ref"] = timed(lambda: shadows.render(scene, params, maps=maps, stages=False))
@@ -108,6 +109,11 @@ def measure(
         print(f"{name:60}{best:9.2f}{median:11.2f}{best / (1e3 * min(seconds['ibr_ref'])):20.2f}x")
     for each in prepared.values():
         each.release()
+
+
+def exported(scene: shadows.Scene, params: shadows.Params, maps: shadows.Maps | None) -> Any:
+    """The scene as the port takes it."""
+    return described("shadows", scene, params, **({} if maps is None else {"maps": maps})).scene
 
 
 def package_maps(scene: shadows.Scene, params: shadows.Params, maps: shadows.Maps | None) -> list[np.ndarray]:
@@ -138,7 +144,8 @@ def timed(call: Callable[[], object]) -> Callable[[], float]:
 def compare(port: Port, scene: shadows.Scene, params: shadows.Params, maps: shadows.Maps) -> None:
     """Print by how much the float32 stages and the timed picture differ from the package's."""
     frame = shadows.render(scene, params, maps=maps)
-    drawn, fast = (port.render(scene, params, maps=maps, stages=stages) for stages in (True, False))
+    given = exported(scene, params, maps)
+    drawn, fast = (port.render(given, params, stages=stages) for stages in (True, False))
     print("\nlargest and mean difference between GLSL in float32 and ibr_ref, nine samples")
     for name in ("warp.rows", "warp.image", "project.coord", "project.shadow", "accumulate.shadow"):
         off = abs(frame.stages[name] - drawn.stages[name])

@@ -19,6 +19,7 @@ import numpy as np
 
 import ibr_ref
 from ibr_ref import io, splatting
+from tests.ports.described import described
 from tests.ports.splatting import Port
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "breakdancers"
@@ -68,9 +69,10 @@ def pictures() -> tuple[str, ibr_ref.DepthImage, ibr_ref.Camera]:
 
 def measure(port: Port, scene: splatting.Scene, params: splatting.Params, blocks: int) -> None:
     """Print the rows of one lighting, and by how much the pictures differ."""
-    plain = port.prepare(scene, params, stages=False)
-    quads = port.prepare(scene, params, stages=False, primitive="quads")
-    staged = port.prepare(scene, params, stages=True)
+    given = described("splatting", scene, params).scene
+    plain = port.prepare(given, params, stages=False, primitive="points")
+    quads = port.prepare(given, params, stages=False, primitive="quads")
+    staged = port.prepare(given, params, stages=True, primitive="points")
     contenders: dict[str, Callable[[], float]] = {
         "(a) GLSL, point sprites": plain.seconds,
         "(b) GLSL, quads": quads.seconds,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -56,21 +55,28 @@ def test_the_timed_shadows_are_nearly_the_same(name: str, device: Any) -> None:
     assert abs(staged.color - timed.color).mean() < 0.003
 
 
-def test_what_is_not_ported_is_refused_with_its_feature(device: Any) -> None:
-    for name, changes, words in [
-        ("displacement-box", {"method": "relief"}, "method = 'relief'"),
-        ("shadows-direct", {"method": "grid"}, "method = 'grid'"),
-    ]:
-        case = oracle.build(name)
-        with pytest.raises(ValueError, match=words):
-            drawn(replace(case, params=replace(case.params, **changes)), device)
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [("displacement-box", "relief"), ("shadows-direct", "grid")],
+)
+def test_what_is_not_ported_is_refused_with_its_feature(name: str, method: str, device: Any) -> None:
+    from tests.ports.__main__ import draw
+    from tests.ports.described import described
+
+    case = oracle.build(name)
+    exported = described(case.method, case.scene, case.params, **case.inputs)
+    exported.params.method = method
+    with pytest.raises(ValueError, match=f"method = '{method}': the port allows"):
+        draw(exported, device)
 
 
 def test_from_the_command_line(device: Any, tmp_path: Path) -> None:
-    """Two folders; one line and no folder for what is not ported."""
+    """Two folders; one line and no folder for what is not ported, or is no case."""
     box = oracle.build("displacement-box")
     oracle.export(box, tmp_path / "box")
-    oracle.export(replace(box, name="relief", params=replace(box.params, method="relief")), tmp_path / "relief")
+    oracle.export(box, tmp_path / "relief")
+    document = tmp_path / "relief" / "case.json"
+    document.write_text(document.read_text("utf-8").replace('"method": "protruded"', '"method": "relief"'), "utf-8")
 
     def run(case: str) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "-m", "tests.ports", str(tmp_path / case), str(tmp_path / "port" / case)]
@@ -82,5 +88,9 @@ def test_from_the_command_line(device: Any, tmp_path: Path) -> None:
     assert np.load(tmp_path / "port" / "box" / "march.hit_index.npy").dtype == np.int32
     refused = run("relief")
     assert refused.returncode == 1
-    assert refused.stderr.strip() == "relief is not ported: method = 'relief': the port allows protruded"
+    assert refused.stderr.strip() == "displacement-box is not ported: method = 'relief': the port allows protruded"
     assert not (tmp_path / "port" / "relief").exists()
+    nowhere = run("nowhere")
+    assert nowhere.returncode == 1
+    assert "nowhere: is no case" in nowhere.stderr
+    assert len(nowhere.stderr.splitlines()) == 1
