@@ -102,7 +102,7 @@ def test_qualities(tmp_path: Path) -> None:
     moved = next(claim for claim in maps.claims if claim.claim.startswith("A moved light"))
     assert moved.holds
     soft = {row[0]: row for row in ran(quality.soft_quality, tmp_path).tables[0].rows}
-    assert soft["warped, 9 samples"][2] is None
+    assert soft["grid, Haar, 9 samples"][2] is None
     assert soft["grid, raw, 9 samples"][-1] == 1.0
     assert all(0.0 < float(value or 1.0) < 1.0 for row in soft.values() for value in row[1:-1:2])
 

@@ -13,6 +13,7 @@ from ibr_ref import io, models, shadows
 from ibr_ref.cli.demo.shadows import difference, warped_and_rendered
 from ibr_ref.cli.reproduce.findings import Figure, Found, Within
 from ibr_ref.cli.reproduce.shadows.objects import objects, which
+from ibr_ref.scene import Camera
 from ibr_ref.shadows import Maps, Params, Scene, SoftParams
 
 Array = NDArray[np.float64]
@@ -32,6 +33,21 @@ def _warping(name: str) -> tuple[Scene, Params, Maps]:
     scene = models.shadow_stage(objects()[name], offset=OFFSET)
     params = Params(light_samples=9)
     return scene, params, shadows.prepare(scene, params, controls=PLACEMENT)
+
+
+def _close_up(scene: Scene) -> Scene:
+    """The shadow of what stands at OFFSET, large in a picture of 320 x 240."""
+    camera = Camera.look_at(
+        eye=(1.2, -3.0, 2.6),
+        target=(0.42, -0.4, -0.5),
+        up=(0, 0, 1),
+        vertical_fov=14.0,
+        near=0.1,
+        far=30.0,
+        width=320,
+        height=240,
+    )
+    return replace(scene, camera=camera)
 
 
 def _names() -> tuple[str, str]:
@@ -105,15 +121,16 @@ def figure_8(folder: Path, within: Within) -> Found:
     scene, params, maps = _warping(_names()[1])
     parts = []
     for count in SAMPLES:
-        frame = shadows.render(scene, replace(params, light_samples=count, accumulation="unorm8"), maps=maps)
-        parts.append(_grey(frame.stages["accumulate.shadow"][180:420, 130:450]))
+        eight_bits = replace(params, light_samples=count, accumulation="unorm8")
+        frame = shadows.render(_close_up(scene), eight_bits, maps=maps)
+        parts.append(_grey(frame.stages["accumulate.shadow"]))
     io.write_image(folder / "figure_8.png", _row(parts))
     return Found(
         figures=(
             Figure(
                 title="Figure 8: samples of the light, accumulated",
                 file="figure_8.png",
-                caption="1, 5 and 9 warped maps added with alpha 1/N in an 8-bit frame buffer (a part of the picture).",
+                caption="1, 5 and 9 warped maps added with alpha 1/N in an 8-bit frame buffer, from near.",
                 published="the soft shadow that several shadows add up to.",
             ),
         )
@@ -146,16 +163,16 @@ def figures_9_to_12(folder: Path, within: Within) -> Found:
 def soft_side_by_side(folder: Path, within: Within) -> Found:
     """Every way to a soft shadow."""
     name = _names()[1]
-    scene, nine, maps = _warping(name)
-    window = np.s_[180:420, 130:450]
+    stage, nine, maps = _warping(name)
+    scene = _close_up(stage)
     soft: dict[str, Array] = {}
     for i, method in enumerate(("traced", "convolution", "pcss")):
         within(f"{method}, the {name}", i, 5)
-        soft[method] = shadows.render_soft(scene, SoftParams(method=method)).stages["soft.shadow"][window]
+        soft[method] = shadows.render_soft(scene, SoftParams(method=method)).stages["soft.shadow"]
     for i, (method, made) in enumerate({"direct": None, "warp": maps}.items()):
         within(f"{method}, nine samples, the {name}", i + 3, 5)
         frame = shadows.render(scene, replace(nine, method=method), maps=made)
-        soft[method] = frame.stages["accumulate.shadow"][window]
+        soft[method] = frame.stages["accumulate.shadow"]
     truth = soft.pop("traced")
     order = [soft[method] for method in ("direct", "warp", "convolution", "pcss")]
     above = _row([_grey(shadow) for shadow in (truth, *order)])
