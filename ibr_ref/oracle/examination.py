@@ -39,14 +39,15 @@ class Examination:
 
 
 def judge(case: Case, handed: Handed, device: Device) -> list[Judgement]:
-    """All that one device allows: the stages in order, each on the port's own inputs, then "image" if a colour is there.
+    """All that one device allows: the stages in order, each on the port's own inputs, then "image" if a colour is there."""
+    stages = _stages(case, handed, device)
+    return [*stages, referee(case.method).judge_image(case, device, handed)] if "color" in handed else stages
 
-    Where nothing but the picture and its depth was handed in there are no stages to tell apart.
-    """
-    method = referee(case.method)
-    alone = {*handed} <= {"color", "depth"}
-    judgements = [] if alone and "color" in handed else method.judge_stages(case, device, handed)
-    return [*judgements, method.judge_image(case, device, handed)] if "color" in handed else judgements
+
+def _stages(case: Case, handed: Handed, device: Device) -> list[Judgement]:
+    """Where nothing but the picture and its depth was handed in there are no stages to tell apart."""
+    alone = {*handed} <= {"color", "depth"} and "color" in handed
+    return [] if alone else referee(case.method).judge_stages(case, device, handed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,10 +119,18 @@ def _trials(case: Case, handed: Handed, devices: Sequence[Device]) -> list[_Tria
         return [loosest]
     trials = []
     for device in devices[:-1]:
-        trials.append(_Trial(device, judge(case, handed, device)))
+        trials.append(_trial(case, handed, device))
         if not trials[-1].wrong:
             return trials
     return [*trials, loosest]
+
+
+def _trial(case: Case, handed: Handed, device: Device) -> _Trial:
+    """Of a profile that is in question: the picture first, and if that is wrong, nothing else."""
+    if "color" not in handed:
+        return _Trial(device, judge(case, handed, device))
+    image = referee(case.method).judge_image(case, device, handed)
+    return _Trial(device, [image] if image.wrong.any() else [*_stages(case, handed, device), image])
 
 
 def _first_wrong(judgements: Sequence[Judgement]) -> Judgement | None:

@@ -115,7 +115,8 @@ class Verdict(_Record):
     declared: bool = False
     """Whether the port, or the caller, named the profile."""
     tried: dict[str, int] = {}
-    """Profiles in the order in which they were tried, and how many elements each leaves unexplained."""
+    """Profiles in the order in which they were tried, and how many elements each leaves unexplained, at least: of a profile
+    that does not explain the picture no stage is judged."""
     stages: tuple[StageVerdict, ...] = ()
     first_wrong_stage: str | None = None
     witness: Witness | None = None
