@@ -64,9 +64,10 @@ _ACCEPTED: WeakKeyDictionary[Case, dict[str, Accepted]] = WeakKeyDictionary()
 
 
 def candidates_of(case: Case, device: Device) -> Candidates:
-    """Computed once for a case and a device, for as long as the case lives."""
+    """Computed once for a case and its last device, for as long as the case lives."""
     known = _CANDIDATES.setdefault(case, {})
     if device.name not in known:
+        known.clear()
         known[device.name] = _candidates(case, device)
     return known[device.name]
 
@@ -90,9 +91,10 @@ def _candidates(case: Case, device: Device) -> Candidates:
 
 
 def accepted_of(case: Case, device: Device) -> Accepted:
-    """Computed once for a case and a device, for as long as the case lives."""
+    """Computed once for a case and its last device, for as long as the case lives."""
     known = _ACCEPTED.setdefault(case, {})
     if device.name not in known:
+        known.clear()
         known[device.name] = _accepted(case, device)
     return known[device.name]
 
