@@ -29,6 +29,10 @@ BAND_ROWS = 8
 """Rows of the map that a thread draws at a time."""
 
 
+SHORT_RUN = 32
+"""Columns. A run of no more is fetched whole where its triangle is solid anywhere: sooner than asking which part is."""
+
+
 class Image(NamedTuple):
     """A square image to fetch from, and its control points."""
 
@@ -212,10 +216,12 @@ def _rasterize(mesh, chosen, source, other, row, uv, other_uv):
         first, stop = columns_in_row(here, width)
         if first == stop:
             continue
-        a, b = _live_run(here, first, stop, np.float64(width), spans, corners, t)
-        if other is not None:
-            c, d = _live_run(here, first, stop, np.float64(width), other_spans, other_corners, t)
-            a, b = _joined(a, b, c, d)
+        a, b = first, stop if solid[t] else first
+        if b - a > SHORT_RUN:
+            a, b = _live_run(here, first, stop, np.float64(width), spans, corners, t)
+            if other is not None:
+                c, d = _live_run(here, first, stop, np.float64(width), other_spans, other_corners, t)
+                a, b = _joined(a, b, c, d)
         if first < end and stop > begin:
             for i in range(np.uintp(first), np.uintp(stop)):
                 u[i] = np.nan
@@ -261,6 +267,16 @@ def _fill(source, other, share, size, uv, other_uv, begin, end, index, fraction,
 
 
 @device
+def _trimmed(texels, first, stop, blank):
+    """The part of [first, stop) that begins and ends with what is not blank; nothing: (S, 0)."""
+    while first < stop and texels[first] == blank:
+        first += 1
+    while first < stop and texels[stop - 1] == blank:
+        stop -= 1
+    return (first, stop) if first < stop else (len(texels), 0)
+
+
+@device
 def _draw_band(source, other, share, mesh, outside, first_row, last_row, out, out_spans):
     size = out.shape[1]
     uv, other_uv, spare = np.empty((2, size)), np.empty((2, size)), np.empty(size)
@@ -269,12 +285,12 @@ def _draw_band(source, other, share, mesh, outside, first_row, last_row, out, ou
     chosen = near[: _in_rows(mesh.box, first_row, last_row, near)]
     for row in range(first_row, last_row):
         a, b = _rasterize(mesh, chosen, source, other, row, uv, other_uv)
-        out_spans[row, 0], out_spans[row, 1] = a, b
         out[row, : min(a, b)] = outside
         if a < b:
             scratch = index, fraction, spare
             _fill(source, other, share, np.float64(size), uv, other_uv, a, b, *scratch, outside, out[row, a:b])
         out[row, b:] = outside
+        out_spans[row, 0], out_spans[row, 1] = _trimmed(out[row], a, b, outside)
 
 
 @kernel

@@ -175,6 +175,28 @@ def test_two_images_are_warped_as_one_by_one_and_mixed(seed: int, share: float, 
     assert np.array_equal(both, one * (1.0 - share) + other * share)
 
 
+@derandomized
+@given(
+    st.integers(0, 10000),
+    st.integers(90, 200),
+    st.tuples(st.integers(2, 4), st.integers(2, 4)),
+    st.booleans(),
+    st.sampled_from([0.02, 0.2, 0.5]),
+)
+def test_what_is_not_fetched_is_blank(seed: int, size: int, shape: tuple[int, int], two: bool, force: float) -> None:
+    """Long runs, of which a part may be live: the same as where every texel counts as solid."""
+    random = np.random.RandomState(seed)
+    first, second, target = (
+        np.clip(regular_grid(*shape) + random.uniform(-force, force, (*shape, 2)), 0.0, 1.0) for _ in range(3)
+    )
+    sources = [source_of(drawn_image(random, size, True, 0.1), grid, 1.0) for grid in (first, second)]
+    everywhere = [source._replace(spans=np.full((size, 2), (0, size), np.int32)) for source in sources]
+    out, expected = np.empty((2, size, size))
+    draw(sources[0], sources[1] if two else None, 0.3, target, 1.0, out)
+    draw(everywhere[0], everywhere[1] if two else None, 0.3, target, 1.0, expected)
+    assert np.array_equal(out, expected)
+
+
 @pytest.mark.parametrize("shape", [(2, 2), (3, 5), (15, 5), (5, 15)])
 def test_the_regular_grid_leaves_the_image(shape: tuple[int, int]) -> None:
     image = np.random.RandomState(0).random_sample((64, 64))
