@@ -65,8 +65,9 @@ def test_times_stand_beside_the_papers(tmp_path: Path) -> None:
     one = ran(times.table_1, tmp_path).tables[0]
     assert [row[:3] for row in one.rows][:2] == [("kettle", 12, "16²"), ("kettle", 12, "32²")]
     assert one.rows[0][4] == 4  # the paper's first time of all
-    two, three, five = ran(times.by_samples, tmp_path).tables
-    assert [len(table.rows) for table in (two, three, five)] == [2, 6, 4]
+    two, three, five, frames = ran(times.by_samples, tmp_path).tables
+    assert [len(table.rows) for table in (two, three, five, frames)] == [2, 6, 4, 4]
+    assert frames.rows[0][2] is None  # the paper has none
     assert two.rows[0][2] == 22
     assert five.rows[3][0] == "warped, 9 samples"
     assert five.rows[3][2] == 33
