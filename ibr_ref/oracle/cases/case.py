@@ -33,7 +33,8 @@ class Case:
     """What else is given: "maps" (shadows.Maps), "normals" (uint8 (H, W, 3), one an image, of splatting)."""
 
     def __post_init__(self) -> None:
-        """Raise ValueError for what no referee judges: the systems that the papers compare with."""
+        """Raise ValueError for what no referee judges: another method, the systems that the papers compare with."""
+        checks.choice("method", self.method, ("displacement", "splatting", "shadows"))
         if self.method == "displacement":
             checks.choice("method", self.params.method, ("protruded",))
         elif self.method == "splatting":

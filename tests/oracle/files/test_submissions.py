@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ibr_ref.oracle.files.export import color_bytes
+from ibr_ref.oracle.files.write import color_bytes
 
 from ibr_ref.io import write_image
 from ibr_ref.oracle.cases import Case
