@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.judgement import Parameter
+from ibr_ref.oracle.referees.moved import components, with_light, with_params, with_scene
 from ibr_ref.scene import Camera
 
 STEP = 2.0**-10
@@ -24,10 +24,8 @@ def parameters(case: Case) -> list[Parameter]:
     if light.specular > 0.0:
         found.append(_parameter("light.specular", light.specular, _light(case, "specular")))
     where = "position" if light.direction is None else "direction"
-    found += [
-        _parameter(f"light.{where}.{axis}", float(np.asarray(getattr(light, where))[k]), _light_axis(case, where, k))
-        for k, axis in enumerate("xyz")
-    ]
+    places = components(getattr(light, where), lambda vector: with_light(case, **{where: vector}))
+    found += [_parameter(f"light.{where}.{axis}", value, moved) for axis, value, moved in places]
     found.append(_parameter("height_scale", 1.0, _scaled(case)))
     found.append(_parameter("steep_threshold", case.params.steep_threshold, _param(case, "steep_threshold")))
     if case.params.shadow_steps:
@@ -44,24 +42,11 @@ def _parameter(name: str, value: float, moved: Callable[[float], Case], size: fl
 
 
 def _light(case: Case, name: str) -> Callable[[float], Case]:
-    return lambda value: _with_light(case, **{name: value})
-
-
-def _light_axis(case: Case, where: str, axis: int) -> Callable[[float], Case]:
-    def moved(value: float) -> Case:
-        vector = np.array(getattr(case.scene.light, where), np.float64)
-        vector[axis] = value
-        return _with_light(case, **{where: vector})
-
-    return moved
-
-
-def _with_light(case: Case, **changes: Any) -> Case:
-    return replace(case, scene=replace(case.scene, light=replace(case.scene.light, **changes)))
+    return lambda value: with_light(case, **{name: value})
 
 
 def _param(case: Case, name: str) -> Callable[[float], Case]:
-    return lambda value: replace(case, params=replace(case.params, **{name: value}))
+    return lambda value: with_params(case, **{name: value})
 
 
 def _scaled(case: Case) -> Callable[[float], Case]:
@@ -69,7 +54,7 @@ def _scaled(case: Case) -> Callable[[float], Case]:
 
     def moved(factor: float) -> Case:
         polygons = [replace(p, height_scale=p.height_scale * factor) for p in case.scene.polygons]
-        return replace(case, scene=replace(case.scene, polygons=polygons))
+        return with_scene(case, polygons=polygons)
 
     return moved
 
@@ -81,7 +66,7 @@ def _tiled(case: Case) -> Callable[[float], Case]:
         polygons = [
             replace(p, facade_tile=(p.facade_tile[0] * factor, p.facade_tile[1] * factor)) for p in case.scene.polygons
         ]
-        return replace(case, scene=replace(case.scene, polygons=polygons))
+        return with_scene(case, polygons=polygons)
 
     return moved
 
@@ -96,7 +81,7 @@ def _moved_eye(case: Case, axis: int) -> Callable[[float], Case]:
         eye = np.array(camera.eye)
         eye[axis] += offset * eye[3]
         shifted: Camera = replace(camera, view_from_world=view, eye=eye)
-        return replace(case, scene=replace(case.scene, camera=shifted))
+        return with_scene(case, camera=shifted)
 
     return moved
 
