@@ -48,7 +48,7 @@ INCONCLUSIVE, FAIL = Outcome.INCONCLUSIVE, Outcome.FAIL
 
 picture("black", INCONCLUSIVE, "nothing rendered")(np.zeros_like)
 picture("white", INCONCLUSIVE, "nothing rendered")(np.ones_like)
-picture("background alone", INCONCLUSIVE, "the background")(lambda c: np.broadcast_to((0.2, 0.4, 0.7), c.shape).copy())
+picture("background alone", INCONCLUSIVE, "the background")(lambda c: np.broadcast_to((0.2, 0.4, 0.71), c.shape).copy())
 picture("all NaN", INCONCLUSIVE, "nan")(lambda c: np.full_like(c, np.nan))
 picture("one NaN", INCONCLUSIVE, "nan")(lambda c: np.where(np.arange(c.size).reshape(c.shape) == 5000, np.nan, c))
 picture("one infinity", INCONCLUSIVE, "inf")(lambda c: np.where(np.arange(c.size).reshape(c.shape) == 5000, np.inf, c))

@@ -1,7 +1,8 @@
 """The cases of displacement mapping. Together they show every feature of the method that a port can get wrong.
 
 Cameras are chosen so that float32 cannot turn many pixels: no corner of a face lies near the middle between two subpixels,
-roofs lie between the lattice's heights, and thresholds off it. Each test of a case says how many pixels are left open.
+roofs lie between the lattice's heights, thresholds off it, and no background halfway between two bytes. Each test of a case
+says how many pixels are left open.
 """
 
 from __future__ import annotations
@@ -99,7 +100,7 @@ def slope() -> Case:
     camera = _looking(eye=(2.4, -1.6, 1.3), target=(1.3, -0.35, 0.2), vertical_fov=30.0)
     light = Light(position=(1.0, -1.4, 1.5), diffuse=1.3, specular=0.8, exponent=12)
     about = "A tilted parallelogram with a facade under a lamp: self-shadow, a highlight, colours beyond white."
-    scene = Scene(polygons=[_sheared()], camera=camera, light=light, background=(0.1, 0.3, 0.2))
+    scene = Scene(polygons=[_sheared()], camera=camera, light=light, background=(0.11, 0.31, 0.2))
     return _case("slope", "typical", about, scene, _params(shadow_steps=7, steep_threshold=0.15))
 
 
@@ -107,7 +108,7 @@ def city() -> Case:
     """Facades and shadows."""
     camera = _looking(eye=(-0.1, -2.1, 1.21), target=(-0.5, -0.5, 0.1), vertical_fov=45.0)
     light = Light(direction=(-0.7, -0.6, 0.6), specular=0.3, exponent=31)
-    scene = Scene(polygons=[_quarter()[0]], camera=camera, light=light, background=(0.4, 0.5, 0.6))
+    scene = Scene(polygons=[_quarter()[0]], camera=camera, light=light, background=(0.4, 0.51, 0.6))
     about = "A block of a city: facades, self-shadow from a low sun, a faint highlight."
     return _case("city", "typical", about, scene, _params(linear_steps=40, binary_steps=3, shadow_steps=16))
 
@@ -187,7 +188,7 @@ def crossing() -> Case:
     )  # fmt: skip
     camera = _looking(eye=(2.6, -1.4, 1.2), target=(1.2, -0.2, 0.2))
     light = Light(direction=(0.3, -0.5, 1.0))
-    scene = Scene(polygons=[_sheared(), upright], camera=camera, light=light, background=(0.2, 0.3, 0.1))
+    scene = Scene(polygons=[_sheared(), upright], camera=camera, light=light, background=(0.2, 0.31, 0.11))
     about = "One volume through another: which is in front changes from pixel to pixel."
     return _case("crossing", "adversarial", about, scene, _params(linear_steps=16, binary_steps=4))
 
@@ -261,7 +262,7 @@ def metropolis() -> Case:
     """A picture of real size."""
     camera = _looking(eye=(2.6, -3.14, 2.02), target=(0.0, 0.0, 0.0), vertical_fov=52.0, width=640, height=480)
     light = Light(direction=(-0.6, -0.5, 0.7), specular=0.3, exponent=37)
-    scene = Scene(polygons=[models.city()], camera=camera, light=light, background=(0.5, 0.7, 0.9))
+    scene = Scene(polygons=[models.city()], camera=camera, light=light, background=(0.51, 0.71, 0.91))
     about = "The whole city at 640 x 480: facades, self-shadow, a highlight."
     params = _params(linear_steps=40, binary_steps=1, shadow_steps=8)
     return _case("metropolis", "real-sized", about, scene, params)

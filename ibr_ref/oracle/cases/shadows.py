@@ -90,7 +90,7 @@ def _scene(**changes: Any) -> Scene:
         "light": _light(),
         "camera": _camera(),
         "ambient": 0.2,
-        "background": (0.61, 0.703, 0.9),
+        "background": (0.61, 0.703, 0.91),
     }
     return Scene(**{**values, **changes})
 

@@ -2,7 +2,8 @@
 
 No flat wall faces a camera and no two references share a point by accident: depths do not tie but where the same image is
 given twice, which then ties on every device. Constant widths are multiples of 1/128, which have their borders on the raster
-of 1/256 when drawn as quads; the widths of the case for point sprites are in [1, 64] and follow a law instead.
+of 1/256 when drawn as quads; the widths of the case for point sprites are in [1, 64] and follow a law instead. No
+background lies halfway between two bytes.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def ball() -> Case:
     """The easy one."""
     camera = looking((0.4, -3.0, 0.7), size=(56, 52))
     view = looking((0.9, -2.7, 0.9), size=(96, 72))
-    scene = Scene(images=[painted(camera, ball_depths(camera))], camera=view, light=None, background=(0.1, 0.2, 0.3))
+    scene = Scene(images=[painted(camera, ball_depths(camera))], camera=view, light=None, background=(0.11, 0.2, 0.31))
     about = "A ball in its own colours, by splats of two pixels."
     return case("ball", "easy", about, "ieee32", scene, Params(alpha=2.0))
 
@@ -59,7 +60,7 @@ def lamp() -> Case:
     about = (
         "Two measured cameras of balls on the ground in the light of a lamp: skew, masks, a highlight, all of the law."
     )
-    scene = Scene(images=images, camera=view, light=light, background=(0.2, 0.4, 0.7))
+    scene = Scene(images=images, camera=view, light=light, background=(0.2, 0.4, 0.71))
     return case("lamp", "typical", about, "ieee32", scene, law)
 
 
@@ -70,7 +71,7 @@ def discs() -> Case:
     view = parallel((1.0, -4.0, 2.0), size=(128, 96), view_height=2.0)
     light = Light(direction=(0.8, 0.9, 0.5), ambient=0.2, diffuse=1.0, specular=0.5, exponent=40)
     images = [painted(camera, np.fmin(ball_depths(camera, 0.7), ground))]
-    scene = Scene(images=images, camera=view, light=light, background=(0.5, 0.7, 0.9))
+    scene = Scene(images=images, camera=view, light=light, background=(0.51, 0.71, 0.91))
     about = "Orthographic on either side: large discs, narrower with the depth, overbright in the sun."
     return case("discs", "typical", about, "ieee32", scene, Params(alpha=21.0, gamma=0.5, max_width=12.5, shape="disc"))
 
@@ -81,7 +82,7 @@ def sprites() -> Case:
     view = looking((1.9, -2.1, 1.5), size=(128, 96), vertical_fov=48.0)
     light = Light(position=(2.5, -1.0, 2.5), ambient=0.15, diffuse=0.7, specular=0.3, exponent=9)
     images = [painted(camera, ball_depths(camera))]
-    scene = Scene(images=images, camera=view, light=light, background=(0.05, 0.1, 0.2))
+    scene = Scene(images=images, camera=view, light=light, background=(0.05, 0.11, 0.2))
     about = "A ball of wide splats, as point sprites or quads of any rasterizer draw them."
     return case("sprites", "typical", about, "gl", scene, Params(alpha=14.0, beta=0.05, gamma=0.1, delta=0.4))
 
@@ -104,7 +105,7 @@ def shelves() -> Case:
     images = [noisy(camera, 3.0 + 0.3 * noise(camera.height, camera.width, seed=i)) for i, camera in enumerate(cameras)]
     view = looking((2.0, -2.0, 2.0), size=(96, 72), vertical_fov=50.0)
     about = "Seven images of noise on three pages of the atlas, one of them twice: all of its points tie."
-    scene = Scene(images=[*images, images[1]], camera=view, light=None, background=(0.3, 0.6, 0.2))
+    scene = Scene(images=[*images, images[1]], camera=view, light=None, background=(0.31, 0.6, 0.2))
     return case("shelves", "adversarial", about, "ieee32", scene, Params(alpha=3.25, max_atlas_size=32))
 
 
@@ -115,7 +116,7 @@ def terraces() -> Case:
     depth = 7.5 + 0.125 * levels + 0.03125 * np.floor(3.0 * noise(28, 40, seed=4))
     view = looking((1.1, -1.5, 5.1), size=(96, 72), vertical_fov=30.0)
     light = Light(position=(1.0, 2.0, 6.0), ambient=0.2, diffuse=0.7, specular=0.2, exponent=5)
-    scene = Scene(images=[noisy(camera, depth)], camera=view, light=light, background=(0.0, 0.1, 0.0))
+    scene = Scene(images=[noisy(camera, depth)], camera=view, light=light, background=(0.0, 0.11, 0.0))
     about = "Terraces of exact depths: which neighbour a normal takes is a matter of ties, right and down."
     return case("terraces", "adversarial", about, "ieee32", scene, Params(alpha=2.75))
 
@@ -134,7 +135,7 @@ def among() -> Case:
         height=72,
     )
     light = Light(position=(0.0, 0.3, -0.5), specular=0.2, exponent=0)
-    scene = Scene(images=[image], camera=view, light=light, background=(0.9, 0.5, 0.1))
+    scene = Scene(images=[image], camera=view, light=light, background=(0.91, 0.51, 0.11))
     about = "An eye among the points: behind it, before the near plane, beyond the far one, filling the picture."
     return case("among", "adversarial", about, "ieee32", scene, Params(alpha=25.0, beta=2.0, delta=0.1, max_width=60.0))
 
@@ -146,7 +147,7 @@ def dust() -> Case:
     light = Light(direction=(1.0, -2.0, 1.0), ambient=0.1, specular=0.3, exponent=32)
     law = Params(alpha=1.0, beta=0.25, gamma=0.1, delta=0.3, min_width=0.25, max_width=1.5)
     image = painted(camera, ball_depths(camera), in_bytes=False)
-    scene = Scene(images=[image], camera=view, light=light, background=(0.3, 0.3, 0.3))
+    scene = Scene(images=[image], camera=view, light=light, background=(0.31, 0.31, 0.31))
     about = "A ball of splats smaller than a pixel, seen at a grazing angle, by a law that reaches both of its limits."
     return case("dust", "adversarial", about, "ieee32", scene, law)
 
