@@ -45,7 +45,7 @@ def test_help_does_not_import_numba() -> None:
 
 @pytest.mark.parametrize(
     "command",
-    [(), ("render",), ("demo",), ("bench",), ("render", "displacement"), ("render", "splatting")],
+    [(), ("render",), ("demo",), ("export",), ("bench",), ("render", "displacement"), ("render", "splatting")],
     ids=lambda c: " ".join(c) or "ibr-ref",
 )
 def test_every_command_has_help(run: Run, command: tuple[str, ...]) -> None:

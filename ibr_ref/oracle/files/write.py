@@ -97,7 +97,9 @@ def _write(made: Path, case: Case, document: Document, inputs: Inputs) -> None:
             write_array(file, array)
     for name, image in images.items():
         write_image(made / name, image / 255.0)
-    documents = {"case.json": json_text(document) + "\n", "README.md": readme(document)}
+    fields = document.model_dump(mode="json")
+    fields["expected"] = fields.pop("expected")  # last: it is the longest
+    documents = {"case.json": json_text(fields) + "\n", "README.md": readme(document)}
     data = {name: text.encode() for name, text in documents.items()}
     hashes: Any = {name: digest_of_bytes(text) for name, text in data.items()}
     manifest = Manifest(

@@ -7,6 +7,7 @@ import re
 from dataclasses import fields
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
+import jsonschema
 import pytest
 from pydantic import BaseModel
 
@@ -120,6 +121,15 @@ def test_every_stage_of_a_frame_is_described(case: Case) -> None:
 def test_a_document_is_what_it_reads_back(case: Case) -> None:
     document, _ = describe(case)
     assert ADAPTER.validate_json(document.model_dump_json()) == document
+
+
+def test_documents_obey_the_schema(case: Case) -> None:
+    """As a port author's tools read it."""
+    validator = jsonschema.Draft202012Validator(json.loads(schema_text()))
+    document = json.loads(describe(case)[0].model_dump_json())
+    validator.validate(document)
+    document["scene"]["camera"]["zoom"] = 1
+    assert not validator.is_valid(document)
 
 
 if __name__ == "__main__":
