@@ -8,8 +8,9 @@ from functools import cache
 import numpy as np
 
 from ibr_ref import Camera, DepthImage, Light, models
+from ibr_ref.models.surface_depths import ball_depths, plane_depths
 from ibr_ref.splatting import Params, Scene, render
-from tests.splatting.scenes import ball_depths, image_of, looking, measured, noise, parallel, plane_depths
+from tests.splatting.scenes import image_of, looking, measured, noise, parallel
 
 __all__ = ["SCENES", "TINY", "render"]
 

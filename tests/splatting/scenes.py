@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref import Camera, DepthImage, Light
 from ibr_ref.io import Frame
+from ibr_ref.models.surface_depths import rays
 from ibr_ref.splatting import Params, Scene, render
 
 Array = NDArray[np.float64]
@@ -41,46 +42,6 @@ def measured(eye: ArrayLike, target: ArrayLike = (0, 0, 0), *, size: tuple[int, 
     view = plain.view_from_world
     return Camera.calibrated(intrinsics=k, rotation=view[:3, :3] + off, translation=view[:3, 3], near=0.5, far=20.0,
                              width=size[0], height=size[1])  # fmt: skip
-
-
-def rays(camera: Camera) -> tuple[Array, Array]:
-    """(H, W, 3) twice: where the lines of sight through the pixels' centres have depth 0, and the way for a depth of 1."""
-    (f_x, s, c_x), (_, f_y, c_y), _ = camera.intrinsics
-    column, row = np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
-    y = (row - c_y) / f_y
-    x = (column - c_x - s * y) / f_x
-    zero, one = np.zeros_like(x), np.ones_like(x)
-    m = camera.world_from_view
-
-    def world(p: tuple[Array, Array, Array], w: float) -> Array:
-        return np.stack([a[0] * p[0] + a[1] * p[1] + a[2] * p[2] + a[3] * w for a in m[:3]], axis=2)
-
-    if camera.perspective:
-        return world((zero, zero, zero), 1.0), world((x, -y, -one), 0.0)
-    return world((x, -y, zero), 1.0), world((zero, zero, -one), 0.0)
-
-
-def dots(a: Array, b: ArrayLike) -> Array:
-    """Dot products of vectors (..., 3), summed from left to right."""
-    b = np.asarray(b, np.float64)
-    return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
-
-
-def plane_depths(camera: Camera, normal: ArrayLike, offset: float) -> Array:
-    """(H, W) depths of the plane normal . p = offset; NaN where it is not before the camera."""
-    start, way = rays(camera)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        depth = (offset - dots(start, normal)) / dots(way, normal)
-    return np.where(depth > 0.0, depth, np.nan)
-
-
-def ball_depths(camera: Camera, radius: float = 1.0, middle: ArrayLike = (0, 0, 0)) -> Array:
-    """(H, W) depths where a sphere is met first; NaN beside it."""
-    start, way = rays(camera)
-    start = start - np.asarray(middle, np.float64)
-    a, b, c = dots(way, way), dots(start, way), dots(start, start) - radius * radius
-    root = b * b - a * c
-    return (-b - np.sqrt(np.where(root >= 0.0, root, np.nan))) / a
 
 
 def box_depths(camera: Camera, half: float = 1.0) -> Array:

@@ -11,10 +11,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from ibr_ref import Camera, DepthImage, Light, splatting
 from ibr_ref.io import Frame
+from ibr_ref.models.surface_depths import ball_depths, dots, plane_depths
 from ibr_ref.pipeline.ellipses import MOST_CUTOFF, gaussian
 from ibr_ref.splatting import Params, Scene
 from ibr_ref.splatting.footprint import LEAST_COSINE
-from tests.splatting.scenes import Array, ball_depths, dots, frame, image_of, looking, measured, parallel, plane_depths
+from tests.splatting.scenes import Array, frame, image_of, looking, measured, parallel
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 

@@ -12,10 +12,11 @@ from numpy.testing import assert_array_equal
 
 from ibr_ref import Camera, DepthImage, Light, splatting
 from ibr_ref.io import Frame
+from ibr_ref.models.surface_depths import ball_depths
 from ibr_ref.splatting import Params, Scene
 from tests.agreement import arrays_of, check_without_stages, difference, flat
 from tests.golden import SCENES
-from tests.splatting.scenes import Array, ball_depths, frame, image_of, looking, noise, parallel
+from tests.splatting.scenes import Array, frame, image_of, looking, noise, parallel
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 

@@ -11,19 +11,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from ibr_ref import Camera, DepthImage
-from tests.splatting.scenes import (
-    Array,
-    ball_depths,
-    box_depths,
-    dots,
-    frame,
-    image_of,
-    looking,
-    measured,
-    parallel,
-    plane_depths,
-    points,
-)
+from ibr_ref.models.surface_depths import ball_depths, dots, plane_depths
+from tests.splatting.scenes import Array, box_depths, frame, image_of, looking, measured, parallel, points
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 

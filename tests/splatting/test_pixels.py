@@ -12,18 +12,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from ibr_ref import Camera, DepthImage, Light, splatting
+from ibr_ref.models.surface_depths import ball_depths, dots, plane_depths
 from ibr_ref.splatting import Params, Scene
-from tests.splatting.scenes import (
-    ball_depths,
-    dots,
-    frame,
-    image_of,
-    looking,
-    measured,
-    parallel,
-    plane_depths,
-    points,
-)
+from tests.splatting.scenes import frame, image_of, looking, measured, parallel, points
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 

@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ibr_ref import DepthImage, models, splatting
+from ibr_ref.models.surface_depths import ball_depths, plane_depths
 from ibr_ref.splatting.references import prepare, view_of
 from ibr_ref.splatting.size_law import GRAZING, MOST_SAMPLES, SplatLaw, fit, needed_widths
-from tests.splatting.scenes import Array, ball_depths, image_of, looking, noise, parallel, plane_depths, points
+from tests.splatting.scenes import Array, image_of, looking, noise, parallel, points
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 

@@ -9,10 +9,11 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from ibr_ref import Light, splatting
+from ibr_ref.models.surface_depths import ball_depths
 from ibr_ref.splatting import Params, Scene, bake
 from tests.agreement import arrays_of, difference
 from tests.splatting.golden_scenes import SCENES, TINY
-from tests.splatting.scenes import ball_depths, frame, image_of, looking, measured, parallel
+from tests.splatting.scenes import frame, image_of, looking, measured, parallel
 from tests.splatting.test_bad_input import IMAGE, rejected
 
 pytestmark = pytest.mark.usefixtures("one_thread")

@@ -10,9 +10,10 @@ import pytest
 from ibr_ref import Light, models, splatting
 from ibr_ref.cli.reproduce.splatting import REPRODUCTION, canvas, quality, selection, speed
 from ibr_ref.cli.reproduce.splatting.systems import constant, fitted, hand_set, systems
+from ibr_ref.models.surface_depths import plane_depths
 from ibr_ref.scene import Camera
 from ibr_ref.splatting import Scene
-from tests.splatting.scenes import image_of, looking, plane_depths
+from tests.splatting.scenes import image_of, looking
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref import Camera, DepthImage, Light, displacement, shadows, splatting
+from ibr_ref.models.surface_depths import ball_depths, plane_depths
 from ibr_ref.oracle.cases import Case
 from ibr_ref.scene import Mesh
 from tests.displacement import scenes as polygons
@@ -60,7 +61,7 @@ def splatting_cameras() -> Case:
     """References of a measured, an orthographic and an axis-angle camera, on two pages."""
     cameras = [points.measured((0.3, -4.0, 1.0), size=(16, 12)), points.parallel((3.0, -2.0, 1.0), size=(16, 12)),
                _axis_angle(15, 11)]  # fmt: skip
-    images = [points.image_of(camera, points.ball_depths(camera)) for camera in cameras]
+    images = [points.image_of(camera, ball_depths(camera)) for camera in cameras]
     codes = np.rint(255 * points.noise(12, 16, 3)) / 255.0
     images[1] = DepthImage(color=codes, depth=images[1].depth, camera=cameras[1], mask=images[1].mask)
     scene = splatting.Scene(images=images, camera=points.looking((1.0, -4.0, 1.0)), light=Light(position=(2, -3, 4)))
@@ -70,7 +71,7 @@ def splatting_cameras() -> Case:
 def splatting_colors() -> Case:
     """Stored colours, every pixel a point, normals given by the case; the picture's camera is a measured one."""
     camera = points.looking((0.0, -4.0, 0.5), size=(10, 8))
-    images = [points.image_of(camera, points.plane_depths(camera, (0.0, 1.0, 0.1), 0.3))]
+    images = [points.image_of(camera, plane_depths(camera, (0.0, 1.0, 0.1), 0.3))]
     scene = splatting.Scene(images=images, camera=points.measured((0.2, -4.1, 0.4), size=(20, 16)), light=None)
     normals = splatting.render(scene).stages["atlas.normal"][0]
     return case("colors", "splatting", scene, splatting.Params(alpha=2.0, shape="disc"), normals=[normals])

@@ -7,17 +7,9 @@ from collections.abc import Callable
 import numpy as np
 
 from ibr_ref import Camera, DepthImage, Light
+from ibr_ref.models.surface_depths import ball_depths, plane_depths
 from ibr_ref.splatting import Params, Scene
-from tests.splatting.scenes import (
-    Array,
-    ball_depths,
-    image_of,
-    looking,
-    measured,
-    noise,
-    parallel,
-    plane_depths,
-)
+from tests.splatting.scenes import Array, image_of, looking, measured, noise, parallel
 
 VIEW = (96, 72)
 """Columns and rows of the pictures."""
