@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
@@ -129,5 +130,5 @@ def _encoded(color: NDArray[np.float64], handed: Handed) -> Image:
 def _as_handed(color: NDArray[np.float64], handed: Handed) -> Image:
     """Bytes again where bytes were handed in."""
     if np.asarray(handed["color"]).dtype == np.uint8:
-        return np.floor(255.0 * color + 0.5).astype(np.uint8)
+        return color_bytes(color)
     return color

@@ -20,3 +20,8 @@ def allows_color(color: Bounded, found: NDArray[np.generic]) -> NDArray[np.bool_
     low, high = (255.0 * np.clip(end, 0.0, 1.0) for end in (color.low, color.high))
     slack = color.device.byte + 255.0 * 2.0**-24  # 255 c is a float32 product
     return np.asarray((steps >= low - slack) & (steps <= high + slack), np.bool_)
+
+
+def color_bytes(color: NDArray[np.float64]) -> NDArray[np.uint8]:
+    """Colours as the conventions make bytes of them: floor(255 c + 0.5) after clamping."""
+    return np.floor(255.0 * np.clip(color, 0.0, 1.0) + 0.5).astype(np.uint8)

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.files.problem import Problem
-from ibr_ref.oracle.files.write import color_bytes
 from ibr_ref.oracle.schema.stages import flat
 
 Bytes = NDArray[np.uint8]

@@ -7,11 +7,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from ibr_ref.io import write_image
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.files.folder import atomic_folder, small_file
 from ibr_ref.oracle.files.manifest import Manifest, digest_of_bytes
@@ -109,8 +108,3 @@ def _write(made: Path, case: Case, document: Document, inputs: Inputs) -> None:
     data["manifest.json"] = (json_text(manifest) + "\n").encode()
     for name, text in data.items():
         (made / name).write_bytes(text)
-
-
-def color_bytes(color: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """Colours as bytes: floor(255 c + 0.5) after clamping."""
-    return np.floor(255.0 * np.clip(color, 0.0, 1.0) + 0.5).astype(np.uint8)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.examination import Examination
 from ibr_ref.oracle.judgement import Judgement
 
@@ -86,7 +87,7 @@ def _bytes(color: NDArray[np.generic]) -> Bytes:
     if color.dtype == np.uint8:
         return np.asarray(color, np.uint8)
     shown = np.nan_to_num(color.astype(np.float64), nan=0.0, posinf=1.0, neginf=0.0)
-    return np.floor(255.0 * np.clip(shown, 0.0, 1.0) + 0.5).astype(np.uint8)
+    return color_bytes(shown)
 
 
 def _dimmed(picture: Bytes) -> Bytes:

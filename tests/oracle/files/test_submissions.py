@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from ibr_ref.io import write_image
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.files import Submission, load_submission, submission_from_arrays
-from ibr_ref.oracle.files.write import color_bytes
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-import numpy as np
-
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.shadows import CASES
 from ibr_ref.oracle.device import PROFILES
@@ -14,6 +12,7 @@ from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.shadows import Port
 from ibr_ref.oracle.referees.shadows import ShadowsReferee
+from tests.oracle.judgements import in_bytes
 
 Arrays = dict[str, Any]
 
@@ -49,34 +48,9 @@ def plain(name: str) -> Arrays:
     return drawn(name)
 
 
-def picture(arrays: Arrays) -> Arrays:
-    """The final image alone."""
-    return {name: arrays[name] for name in ("color", "depth")}
-
-
-def in_bytes(arrays: Arrays) -> Arrays:
-    """The final colour as a PNG has it."""
-    color = np.nan_to_num(arrays["color"])
-    return {"color": np.floor(255.0 * np.clip(color, 0.0, 1.0) + 0.5).astype(np.uint8)}
-
-
 def stages(name: str, handed: Arrays, profile: str | None = None) -> list[Judgement]:
     return REFEREE.judge_stages(case(name), PROFILES[profile or case(name).profile], handed)
 
 
 def image(name: str, handed: Arrays, profile: str | None = None) -> Judgement:
     return REFEREE.judge_image(case(name), PROFILES[profile or case(name).profile], handed)
-
-
-def complaints(judgements: list[Judgement]) -> list[str]:
-    """What is wrong, in words that a failing test shows."""
-    return [
-        f"{j.stage}: {int(j.wrong.sum())} {j.element}s, by {[j.arrays[i] for i in np.unique(j.blame[j.wrong])]}, "
-        f"first {np.argwhere(j.wrong)[0].tolist()}"
-        for j in judgements
-        if j.wrong.any()
-    ]
-
-
-def first_wrong(judgements: list[Judgement]) -> str | None:
-    return next((j.stage for j in judgements if j.wrong.any()), None)

@@ -8,18 +8,8 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.device import PROFILES
-from tests.oracle.shadows.judged import (
-    REFEREE,
-    Arrays,
-    case,
-    complaints,
-    first_wrong,
-    image,
-    picture,
-    plain,
-    reference,
-    stages,
-)
+from tests.oracle.judgements import complaints, first_wrong, picture
+from tests.oracle.shadows.judged import REFEREE, Arrays, case, image, plain, reference, stages
 
 SOFT, DIRECT = "shadows-soft", "shadows-direct"
 

@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from tests.oracle.shadows.judged import SMALL, Arrays, case, complaints, image, in_bytes, picture, stages
+from tests.oracle.judgements import complaints, in_bytes, picture
+from tests.oracle.shadows.judged import SMALL, Arrays, case, image, stages
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 

@@ -10,18 +10,8 @@ import pytest
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.faults import Mutant, Variant
 from ibr_ref.oracle.ports.shadows import MUTANTS, VARIANTS, Port
-from tests.oracle.shadows.judged import (
-    REAL,
-    SMALL,
-    complaints,
-    drawn,
-    first_wrong,
-    image,
-    in_bytes,
-    picture,
-    plain,
-    stages,
-)
+from tests.oracle.judgements import complaints, first_wrong, in_bytes, picture
+from tests.oracle.shadows.judged import REAL, SMALL, drawn, image, plain, stages
 
 SURVIVORS = 0.05
 """Of the bugs, the most that may get away when stages are handed in; and the most that may be blamed on another stage."""

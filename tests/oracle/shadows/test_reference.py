@@ -12,18 +12,8 @@ from ibr_ref.oracle.referees.shadows.accumulate import accumulated
 from ibr_ref.oracle.referees.shadows.image import Accepted
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.places import positions
-from tests.oracle.shadows.judged import (
-    REAL,
-    REFEREE,
-    SMALL,
-    case,
-    complaints,
-    image,
-    in_bytes,
-    picture,
-    reference,
-    stages,
-)
+from tests.oracle.judgements import complaints, in_bytes, picture
+from tests.oracle.shadows.judged import REAL, REFEREE, SMALL, case, image, reference, stages
 
 
 @pytest.mark.parametrize("profile", PROFILES)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-import numpy as np
-
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.splatting import CASES
 from ibr_ref.oracle.device import PROFILES
@@ -40,33 +38,9 @@ def drawn(name: str, policy: Policy = Policy(), port: Any = Port) -> Arrays:  # 
     return arrays
 
 
-def picture(arrays: Arrays) -> Arrays:
-    """The final image alone."""
-    return {name: arrays[name] for name in ("color", "depth")}
-
-
-def in_bytes(arrays: Arrays) -> Arrays:
-    """The final image as a PNG has it."""
-    return {"color": np.floor(255.0 * np.clip(arrays["color"], 0.0, 1.0) + 0.5).astype(np.uint8)}
-
-
 def stages(name: str, handed: Arrays, profile: str | None = None) -> list[Judgement]:
     return REFEREE.judge_stages(case(name), PROFILES[profile or case(name).profile], handed)
 
 
 def image(name: str, handed: Arrays, profile: str | None = None) -> Judgement:
     return REFEREE.judge_image(case(name), PROFILES[profile or case(name).profile], handed)
-
-
-def complaints(judgements: list[Judgement]) -> list[str]:
-    """What is wrong, in words that a failing test shows."""
-    return [
-        f"{j.stage}: {int(j.wrong.sum())} {j.element}s, by {[j.arrays[i] for i in np.unique(j.blame[j.wrong])]}, "
-        f"first {np.argwhere(j.wrong)[0].tolist()}"
-        for j in judgements
-        if j.wrong.any()
-    ]
-
-
-def first_wrong(judgements: list[Judgement]) -> str | None:
-    return next((j.stage for j in judgements if j.wrong.any()), None)

@@ -8,18 +8,8 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.device import PROFILES
-from tests.oracle.splatting.judged import (
-    REFEREE,
-    Arrays,
-    case,
-    complaints,
-    drawn,
-    first_wrong,
-    image,
-    picture,
-    reference,
-    stages,
-)
+from tests.oracle.judgements import complaints, first_wrong, picture
+from tests.oracle.splatting.judged import REFEREE, Arrays, case, drawn, image, reference, stages
 
 LAMP = "splatting-lamp"
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.oracle.splatting.judged import SMALL, Arrays, case, complaints, image, picture, stages
+from tests.oracle.judgements import complaints, picture
+from tests.oracle.splatting.judged import SMALL, Arrays, case, image, stages
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 

@@ -10,7 +10,8 @@ import pytest
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.faults import Mutant, Variant
 from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port
-from tests.oracle.splatting.judged import SMALL, case, complaints, drawn, first_wrong, image, in_bytes, picture, stages
+from tests.oracle.judgements import complaints, first_wrong, in_bytes, picture
+from tests.oracle.splatting.judged import SMALL, case, drawn, image, stages
 
 TELLING = ("lamp", "shelves", "discs", "among", "terraces", "dust", "ball", "quads", "sprites")
 """The small cases, those in which most bugs show first."""

@@ -12,7 +12,8 @@ from ibr_ref.oracle.referees.splatting.normals import Codes, surface
 from ibr_ref.oracle.referees.splatting.place import placed
 from ibr_ref.oracle.referees.splatting.splats import contest
 from ibr_ref.oracle.referees.splatting.table import normal_codes, table
-from tests.oracle.splatting.judged import REFEREE, SMALL, case, complaints, image, in_bytes, picture, reference, stages
+from tests.oracle.judgements import complaints, in_bytes, picture
+from tests.oracle.splatting.judged import REFEREE, SMALL, case, image, reference, stages
 
 
 @pytest.mark.parametrize("profile", PROFILES)

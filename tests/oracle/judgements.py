@@ -1,0 +1,34 @@
+"""What tests of referees hand in, and what they read of judgements."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ibr_ref.oracle.accept.bytes import color_bytes
+from ibr_ref.oracle.judgement import Judgement
+
+Arrays = dict[str, np.ndarray]
+
+
+def picture(arrays: Arrays) -> Arrays:
+    """The final image alone."""
+    return {name: arrays[name] for name in ("color", "depth")}
+
+
+def in_bytes(arrays: Arrays) -> Arrays:
+    """The final colour as a PNG has it."""
+    return {"color": color_bytes(np.nan_to_num(arrays["color"]))}
+
+
+def complaints(judgements: list[Judgement]) -> list[str]:
+    """What is wrong, in words that a failing test shows."""
+    return [
+        f"{j.stage}: {int(j.wrong.sum())} {j.element}s, by {[j.arrays[i] for i in np.unique(j.blame[j.wrong])]}, "
+        f"first {np.argwhere(j.wrong)[0].tolist()}"
+        for j in judgements
+        if j.wrong.any()
+    ]
+
+
+def first_wrong(judgements: list[Judgement]) -> str | None:
+    return next((j.stage for j in judgements if j.wrong.any()), None)
