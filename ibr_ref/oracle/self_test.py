@@ -106,12 +106,13 @@ def _try_mutant(method: str, mutant: Mutant, cases: Sequence[Case]) -> MutantRes
     by_image: tuple[str, int] | None = None
     for case in cases:
         handed = port_output(case, mutant.port)
+        alone = {name: handed[name] for name in ("color", "depth")}
+        # The picture is judged from the case alone, with stages beside it or without.
+        *stages, image = judge(case, alone if by_stages else handed, device)
         if by_stages is None:
-            wrong = next((j for j in judge(case, handed, device) if j.wrong.any()), None)
+            wrong = next((j for j in [*stages, image] if j.wrong.any()), None)
             by_stages = None if wrong is None else (case.name, wrong)
         if by_image is None:
-            alone = {name: handed[name] for name in ("color", "depth")}
-            image = judge(case, alone, device)[-1]
             if image.wrong.any():
                 by_image = case.name, int(image.wrong.sum())
             elif biases(case, alone, image, device, wrong=False):
