@@ -14,6 +14,7 @@ from ibr_ref.oracle.conventions import conventions
 from ibr_ref.oracle.device import PROFILES, Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees import referee
+from ibr_ref.oracle.trials import Trial, judge, tightest
 from ibr_ref.oracle.verdict import Bias, Box, Outcome, StageVerdict, TraceStep, Verdict, Witness
 from ibr_ref.scene import checks
 
@@ -38,30 +39,6 @@ class Examination:
         return _first_wrong(self.judgements)
 
 
-def judge(case: Case, handed: Handed, device: Device) -> list[Judgement]:
-    """All that one device allows: the stages in order, each on the port's own inputs, then "image" if a colour is there."""
-    stages = _stages(case, handed, device)
-    return [*stages, referee(case.method).judge_image(case, device, handed)] if "color" in handed else stages
-
-
-def _stages(case: Case, handed: Handed, device: Device) -> list[Judgement]:
-    """Where nothing but the picture and its depth was handed in there are no stages to tell apart."""
-    alone = {*handed} <= {"color", "depth"} and "color" in handed
-    return [] if alone else referee(case.method).judge_stages(case, device, handed)
-
-
-@dataclass(frozen=True, eq=False)
-class _Trial:
-    """All judgements by one device."""
-
-    device: Device
-    judgements: list[Judgement]
-
-    @property
-    def wrong(self) -> int:
-        return sum(int(j.wrong.sum()) for j in self.judgements)
-
-
 def examine(case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = ()) -> Examination:
     """Judge a port's arrays.
 
@@ -74,15 +51,14 @@ def examine(case: Case, handed: Handed, *, profile: str | None = None, problems:
     if problems or not handed:
         reasons = tuple(problems) or ("nothing was handed in: allowed: color, depth or any stage",)
         return Examination(case=case, handed=handed, judgements=(), verdict=_unusable(case, reasons))
-    trials = _trials(case, handed, [PROFILES[profile]] if profile else [*PROFILES.values()])
-    trial = trials[-1]
+    trial, tried = _declared(case, handed, PROFILES[profile]) if profile else tightest(case, handed)
     judgements = trial.judgements
     fields: dict[str, Any] = {
         "case": case.name,
         "method": case.method,
         "profile": trial.device.name,
         "declared": profile is not None,
-        "tried": {t.device.name: t.wrong for t in trials},
+        "tried": tried,
         "stages": tuple(_summary(j) for j in judgements),
     }
     image = next((j for j in judgements if j.stage == "image"), None)
@@ -108,29 +84,13 @@ def examine(case: Case, handed: Handed, *, profile: str | None = None, problems:
     return Examination(case=case, handed=handed, judgements=judgements, verdict=Verdict(outcome=Outcome.FAIL, **fields))
 
 
+def _declared(case: Case, handed: Handed, device: Device) -> tuple[Trial, dict[str, int]]:
+    trial = Trial(device, judge(case, handed, device))
+    return trial, {device.name: trial.wrong}
+
+
 def _unusable(case: Case, reasons: tuple[str, ...]) -> Verdict:
     return Verdict(outcome=Outcome.INCONCLUSIVE, case=case.name, method=case.method, reasons=reasons)
-
-
-def _trials(case: Case, handed: Handed, devices: Sequence[Device]) -> list[_Trial]:
-    """The last one is what the verdict rests on: the first that leaves nothing unexplained, or the loosest of all."""
-    loosest = _Trial(devices[-1], judge(case, handed, devices[-1]))
-    if loosest.wrong:
-        return [loosest]
-    trials = []
-    for device in devices[:-1]:
-        trials.append(_trial(case, handed, device))
-        if not trials[-1].wrong:
-            return trials
-    return [*trials, loosest]
-
-
-def _trial(case: Case, handed: Handed, device: Device) -> _Trial:
-    """Of a profile that is in question: the picture first, and if that is wrong, nothing else."""
-    if "color" not in handed:
-        return _Trial(device, judge(case, handed, device))
-    image = referee(case.method).judge_image(case, device, handed)
-    return _Trial(device, [image] if image.wrong.any() else [*_stages(case, handed, device), image])
 
 
 def _first_wrong(judgements: Sequence[Judgement]) -> Judgement | None:

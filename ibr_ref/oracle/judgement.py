@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -45,6 +45,16 @@ class Judgement:
             raise ValueError(f"judgement of {self.stage}: arrays of different shapes {sorted(shapes)}")
 
 
+def up_to(judgements: Iterator[Judgement], *, first_wrong: bool) -> list[Judgement]:
+    """All of them, or those up to the first that has a wrong element."""
+    found = []
+    for judgement in judgements:
+        found.append(judgement)
+        if first_wrong and judgement.wrong.any():
+            break
+    return found
+
+
 @dataclass(frozen=True, kw_only=True)
 class TraceRow:
     """One fetch, comparison or result in the computation of one element."""
@@ -83,8 +93,13 @@ class Referee(Protocol):
     def stages(self) -> Sequence[str]:
         """In the order of the pipeline, without "image"."""
 
-    def judge_stages(self, case: Case, device: Device, handed: Handed) -> list[Judgement]:
-        """Every stage of which an array is handed in, in order, each fed with the port's own arrays of the stages before."""
+    def judge_stages(
+        self, case: Case, device: Device, handed: Handed, *, to_first_wrong: bool = False
+    ) -> list[Judgement]:
+        """Every stage of which an array is handed in, in order, each fed with the port's own arrays of the stages before.
+
+        to_first_wrong: end with the first stage that has a wrong element; those after it are not even computed.
+        """
 
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
         """The final colour, and depth where it is handed in, from the case alone."""

@@ -11,10 +11,10 @@ import numpy as np
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.examination import judge
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.faults import Mutant, PlainPort, Variant
+from ibr_ref.oracle.trials import judge
 
 MUTANT_PROFILE = "ieee32"
 """Mutants compute in float32 with correct rounding, and say so."""

@@ -115,8 +115,8 @@ class Verdict(_Record):
     declared: bool = False
     """Whether the port, or the caller, named the profile."""
     tried: dict[str, int] = {}
-    """Profiles in the order in which they were tried, and how many elements each leaves unexplained, at least: of a profile
-    that does not explain the picture no stage is judged."""
+    """Profiles in the order in which they were tried, and how many elements each leaves unexplained: all of them where the
+    verdict is by that profile, else those of the first wrong stage."""
     stages: tuple[StageVerdict, ...] = ()
     first_wrong_stage: str | None = None
     witness: Witness | None = None

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import fftconvolve
 
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
@@ -61,6 +60,8 @@ def plane_distances(distances: Array, occluder: float, count: int) -> Array:
 
 def convolved(occluder: Array, frame: Frame, window: Window, distance: float, planes: Array) -> Array:
     """(P, S, S) the shadow on each plane of receivers, of an occluder's mask (S, S) at a distance."""
+    from scipy.signal import fftconvolve  # loads half of SciPy, which other shadows need not wait for
+
     lights = [light_image(frame.half_edges, window, len(occluder), 1.0 / distance - 1.0 / plane) for plane in planes]
     return np.stack([np.clip(fftconvolve(occluder, light, mode="same"), 0.0, 1.0) for light in lights])
 

@@ -9,6 +9,6 @@ from tests.oracle.plain_referee import PlainReferee
 def plain_referee(monkeypatch: pytest.MonkeyPatch) -> PlainReferee:
     """The engine judges by plain comparison."""
     judge = PlainReferee()
-    for module in ("examination", "conventions", "bias"):
+    for module in ("examination", "trials", "conventions", "bias"):
         monkeypatch.setattr(f"ibr_ref.oracle.{module}.referee", lambda method: judge)
     return judge

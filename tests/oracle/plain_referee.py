@@ -10,7 +10,7 @@ import ibr_ref
 from ibr_ref import displacement, models
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow
+from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow, up_to
 
 
 def box_case(width: int = 96, height: int = 72, ambient: float = 0.2) -> Case:
@@ -36,13 +36,12 @@ class PlainReferee:
 
     stages = ("raster", "march")
 
-    def judge_stages(self, case: Case, device: Device, handed: Handed) -> list[Judgement]:
-        found = []
-        for stage in self.stages:
-            names = tuple(name for name in handed if name.startswith(stage + "."))
-            if names:
-                found.append(self._judge(stage, case, device, handed, names))
-        return found
+    def judge_stages(
+        self, case: Case, device: Device, handed: Handed, *, to_first_wrong: bool = False
+    ) -> list[Judgement]:
+        arrays = {stage: tuple(name for name in handed if name.startswith(stage + ".")) for stage in self.stages}
+        found = (self._judge(stage, case, device, handed, names) for stage, names in arrays.items() if names)
+        return up_to(found, first_wrong=to_first_wrong)
 
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
         return self._judge("image", case, device, handed, ("color",))

@@ -36,7 +36,7 @@ def test_a_looser_profile_is_found_and_a_declared_one_is_kept() -> None:
     handed = {"color": case.frame.color + 2e-4}
     verdict = examine(case, handed).verdict
     assert (verdict.outcome, verdict.profile) == (Outcome.PASS, "gl")
-    assert [*verdict.tried] == ["ieee32", "d3d11", "vulkan", "webgpu", "gl"]
+    assert [*verdict.tried] == ["gl", "ieee32", "d3d11", "vulkan", "webgpu"]
     declared = examine(case, handed, profile="vulkan").verdict
     assert (declared.outcome, declared.profile, declared.declared) == (Outcome.FAIL, "vulkan", True)
 

@@ -155,6 +155,15 @@ def unit(a: Sequence[Bounded]) -> list[Bounded]:
     return [x / length for x in a]
 
 
+def opposite(device: Device) -> float:
+    """The most by which components of two unit vectors may differ: 2, and the roundings of one that was computed.
+
+    Its sum of three squares is off by 4 roundings, the root by half of that and one, the quotient by one more; twice that
+    pays for their products.
+    """
+    return 2.0 + 2.0 * (2.0 * device.operation + device.root + device.quotient) * UNIT
+
+
 def power(base: Bounded, exponent: int) -> Bounded:
     """A whole power of a number >= 0 by products in any order."""
     result = exact(np.ones_like(base.value), base.device)

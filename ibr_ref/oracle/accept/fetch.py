@@ -107,6 +107,20 @@ def fetch(texture: Texture, u: Bounded, v: Bounded) -> Bounded:
     return Bounded(value, error + rounding, device)
 
 
+def highest_around(texture: Texture, u: Bounded, v: Bounded) -> Floats:
+    """(n,) no bilinear fetch of a texture (H, W) at these coordinates is higher; infinite where they may be far off."""
+    off = 2.0 * u.device.operation * UNIT  # of u W and of - 0.5, relative to u W, or to 0.5 where that is less
+    texels, sure = [], np.ones(np.broadcast(u.value, v.value).shape, np.bool_)
+    for c, size in ((u, texture.texels.shape[1]), (v, texture.texels.shape[0])):
+        x = c.value * size
+        sure &= c.error * size + off * (np.abs(x) + 1.0) + c.device.weight_step < 1.0
+        texels.append(np.floor(np.clip(np.nan_to_num(x), -1e9, 1e9)).astype(np.int64))
+    # A fetch at x takes the texels floor(x - 0.5) and the next one, so those within 1 of floor(x); off by one, within 2.
+    most = Texture(texture.extremes(2)[1], texture.repeat).at(texels[1], texels[0])
+    rounding = FILTER_ROUNDINGS * u.device.operation * UNIT * texture.largest
+    return np.where(sure, most + rounding, np.inf)
+
+
 def _finite(error: Floats) -> Floats:
     return np.where(np.isfinite(error), error, 1e9)
 

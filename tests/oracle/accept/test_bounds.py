@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, lerp, power, unit, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, lerp, opposite, power, unit, uploaded
 from ibr_ref.oracle.accept.coverage import covered, snapped
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.accept.winners import winners
@@ -174,3 +174,16 @@ def test_what_has_no_bound_has_none_in_a_product_either() -> None:
     for found in (exact([0.0], device) * anything, anything * exact([0.0], device)):
         assert found.error.tolist() == [np.inf]
         assert found.allows([3.0]).all()
+
+
+@pytest.mark.parametrize(("device", "policy"), POLICIES)
+def test_a_unit_vector_whose_sign_is_open_may_exceed_one_by_its_roundings(device: Device, policy: Policy) -> None:
+    """A wall's normal along an axis: the reference has 1, the port a little more than 1 on the other side."""
+    random = np.random.default_rng(11)
+    vectors = random.normal(0, 1, (3, 20_000)) * (random.random((3, 20_000)) < 0.5)
+    vectors = vectors[:, np.abs(vectors).max(axis=0) > 1e-3]
+    arithmetic = Arithmetic(policy)
+    found = np.stack(arithmetic.unit([arithmetic.number(c) for c in vectors])).astype(np.float64)
+    reference = -vectors / np.sqrt((vectors * vectors).sum(axis=0))
+    apart = np.abs(found - reference).max()
+    assert 2.0 <= apart <= opposite(device)

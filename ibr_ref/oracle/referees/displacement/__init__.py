@@ -12,7 +12,7 @@ import numpy as np
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow
+from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow, up_to
 from ibr_ref.oracle.referees.displacement import image, stages
 from ibr_ref.oracle.referees.displacement.parameters import parameters
 from ibr_ref.oracle.referees.displacement.trace import trace
@@ -25,10 +25,12 @@ class DisplacementReferee:
 
     stages = ("vertex", "raster", "march", "shade", "resolve")
 
-    def judge_stages(self, case: Case, device: Device, handed: Handed) -> list[Judgement]:
+    def judge_stages(
+        self, case: Case, device: Device, handed: Handed, *, to_first_wrong: bool = False
+    ) -> list[Judgement]:
         """Every stage of which an array is handed in, in order, each fed with the port's own arrays of the stages before."""
         with np.errstate(all="ignore"):  # infinite bounds meet zeros; a port's numbers may be anything
-            return stages.judge_stages(case, device, handed)
+            return up_to(stages.judgements(case, device, handed), first_wrong=to_first_wrong)
 
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
         """The final colour, and depth where it is handed in, from the case alone."""

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.displacement import Params, Scene
 from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
 from ibr_ref.oracle.accept.bytes import allows_color
+from ibr_ref.oracle.accept.winners import Winners
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
@@ -27,21 +30,58 @@ BYTE = 1.0 / 255.0
 """The quantization of a picture: what differs by no more does not show (conventions.md, "Numbers")."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Candidates:
-    """What the case alone says of the stages up to the depth test."""
+    """What a scene alone says of the stages up to the depth test, each computed when it is asked for."""
 
-    constants: list[Constants]
-    faces: list[Faces]
-    fragments: Fragments
-    hits: Hits
-    """Of all fragments."""
-    possible: Bools
-    """(n,) whether the outcome may be what its pixel shows."""
-    empty: Bools
-    """(pixels,) whether a pixel may show nothing."""
-    lost: Ints
-    """Pixels with more branches than are followed."""
+    scene: Scene
+    params: Params
+    device: Device
+
+    @cached_property
+    def constants(self) -> list[Constants]:
+        """Of each polygon."""
+        return constants_of(self.scene, self.device)
+
+    @cached_property
+    def faces(self) -> list[Faces]:
+        """Of each polygon."""
+        return [faces_of(each, self.params) for each in self.constants]
+
+    @cached_property
+    def fragments(self) -> Fragments:
+        """Of all faces."""
+        camera = self.scene.camera
+        return fragments_of([triangles_of(each) for each in self.faces], self.device, camera.width, camera.height)
+
+    @cached_property
+    def _hits(self) -> tuple[Hits, Ints]:
+        return hits_of(self.constants, self.params, self.fragments)
+
+    @property
+    def hits(self) -> Hits:
+        """Of all fragments."""
+        return self._hits[0]
+
+    @property
+    def lost(self) -> Ints:
+        """Pixels with more branches than are followed."""
+        return self._hits[1]
+
+    @cached_property
+    def _winners(self) -> Winners:
+        camera = self.scene.camera
+        return winners_of(self.hits, len(self.constants), camera.width * camera.height)
+
+    @property
+    def possible(self) -> Bools:
+        """(n,) whether the outcome may be what its pixel shows."""
+        return self._winners.possible
+
+    @property
+    def empty(self) -> Bools:
+        """(pixels,) whether a pixel may show nothing."""
+        return self._winners.empty
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,26 +108,8 @@ def candidates_of(case: Case, device: Device) -> Candidates:
     known = _CANDIDATES.setdefault(case, {})
     if device.name not in known:
         known.clear()
-        known[device.name] = _candidates(case, device)
+        known[device.name] = Candidates(case.scene, case.params, device)
     return known[device.name]
-
-
-def _candidates(case: Case, device: Device) -> Candidates:
-    scene, params, camera = case.scene, case.params, case.scene.camera
-    constants = constants_of(scene, device)
-    faces = [faces_of(each, params) for each in constants]
-    fragments = fragments_of([triangles_of(each) for each in faces], device, camera.width, camera.height)
-    hits, lost = hits_of(constants, params, fragments)
-    found = winners_of(hits, len(constants), camera.width * camera.height)
-    return Candidates(
-        constants=constants,
-        faces=faces,
-        fragments=fragments,
-        hits=hits,
-        possible=found.possible,
-        empty=found.empty,
-        lost=lost,
-    )
 
 
 def accepted_of(case: Case, device: Device) -> Accepted:

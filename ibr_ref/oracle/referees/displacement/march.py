@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.displacement import Params
 from ibr_ref.oracle.accept.bounded import Bounded, uploaded
-from ibr_ref.oracle.accept.fetch import fetch
+from ibr_ref.oracle.accept.fetch import fetch, highest_around
 from ibr_ref.oracle.referees.displacement.arrays import joined
 from ibr_ref.oracle.referees.displacement.constants import Constants, Vector
 from ibr_ref.oracle.referees.displacement.rays import Rays, paper_rays, volume_rays
@@ -109,21 +109,34 @@ def outcomes_of(search: Search) -> tuple[Outcomes, Ints]:
 
 def inside(search: Search, fragment: Ints, index: Ints) -> tuple[Bools, Bools]:
     """Whether the sample at a lattice index may lie inside the solid, and whether it must."""
-    gap, may_count, must_count = compared(search, fragment, index)
-    return may_count & (gap.high > 0.0), must_count & (gap.low > 0.0)
+    point = search.rays.at(fragment, index, search.lattice)
+    may, must = domain(search, *point[:2])
+    # Most samples lie above all texels around them: they need no fetch.
+    near = np.flatnonzero(may & ~(point[2].low > highest_around(search.constants.textures.height, *point[:2])))
+    gap = _gap(search, [x[near] for x in point])
+    above = np.ones(len(fragment), np.bool_)
+    above[near] = False
+    may, must = may & ~above, must & ~above
+    may[near] &= gap.high > 0.0
+    must[near] &= gap.low > 0.0
+    return may, must
 
 
 def compared(search: Search, fragment: Ints, index: Ints) -> tuple[Bounded, Bools, Bools]:
     """H - h at samples, and whether they may and must count: outside the domain they are empty (the gap is NaN there)."""
-    u, v, h = search.rays.at(fragment, index, search.lattice)
-    may_count, must_count = domain(search, u, v)
-    height = search.constants.textures.height
-    near = np.flatnonzero(may_count & ~(h.low > height.largest))
+    point = search.rays.at(fragment, index, search.lattice)
+    may_count, must_count = domain(search, *point[:2])
+    near = np.flatnonzero(may_count & ~(point[2].low > search.constants.textures.height.largest))
     value, error = np.full(len(fragment), np.nan), np.zeros(len(fragment))
-    if len(near):
-        sample = fetch(height, u[near], v[near])
-        value[near], error[near] = sample.value - h.value[near], sample.error + h.error[near]
-    return Bounded(value, error, h.device), may_count, must_count
+    gap = _gap(search, [x[near] for x in point])
+    value[near], error[near] = gap.value, gap.error
+    return Bounded(value, error, gap.device), may_count, must_count
+
+
+def _gap(search: Search, point: Vector) -> Bounded:
+    u, v, h = point
+    sample = fetch(search.constants.textures.height, u, v)
+    return Bounded(sample.value - h.value, sample.error + h.error, h.device)
 
 
 def domain(search: Search, u: Bounded, v: Bounded) -> tuple[Bools, Bools]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, unit
+from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, opposite, unit
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.referees.displacement.arrays import joined, stacked
 from ibr_ref.oracle.referees.displacement.constants import Constants, Vector
@@ -151,9 +151,9 @@ def _unit(a: Vector, instead: Vector) -> Bounded:
     with np.errstate(divide="ignore", invalid="ignore"):
         result = stacked(unit(a))
     value = np.where(zero[..., None], stacked(instead).value, result.value)
-    # No component of a unit vector leaves [-1, 1] by more than its roundings.
-    error = np.minimum(np.where(np.isnan(result.error), np.inf, result.error), 2.0)
-    return Bounded(value, np.where(zero[..., None], 2.0, error), result.device)
+    anything = opposite(result.device)
+    error = np.fmin(result.error, anything)
+    return Bounded(value, np.where(zero[..., None], anything, error), result.device)
 
 
 def joined_surfaces(parts: list[Surfaces]) -> Surfaces:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,32 +60,34 @@ class Verdict:
     blame: NDArray[np.int8]
 
 
-def judge_stages(case: Case, device: Device, handed: Handed) -> list[Judgement]:
-    """In pipeline order."""
+def judgements(case: Case, device: Device, handed: Handed) -> Iterator[Judgement]:
+    """In pipeline order, each computed when it is asked for."""
     port = Port(case=case, device=device, handed=handed)
-    found: list[Judgement] = []
+    before_shade: list[Judgement] = []
     if port.names("vertex"):
-        found.append(_vertex(port))
+        before_shade.append(_vertex(port))
+        yield before_shade[-1]
     candidates, replayed = raster_input(port)
     if port.names("raster"):
-        found.append(_picture(port, "raster", replayed, _raster(port, candidates)))
+        before_shade.append(_picture(port, "raster", replayed, _raster(port, candidates)))
+        yield before_shade[-1]
     fragments, bare = march_input(port, candidates)
     hits, lost = hits_of(port.constants, case.params, fragments)
     if port.names("march"):
         verdict = _march(port, hits, bare, fragments, lost)
-        found.append(_picture(port, "march", port.names("raster"), verdict))
+        before_shade.append(_picture(port, "march", port.names("raster"), verdict))
+        yield before_shade[-1]
     hits = shade_input(port, hits)
     shades = shades_of(port.constants, case.params, hits)
     surfaces = light_input(port, hits, shades)
     shown, color = lighted(port.constants, hits, surfaces)
     if port.names("shade"):
         verdict = _shade(port, hits, shades, hits.pixel[surfaces.hit[shown]], color, lost)
-        found.append(_picture(port, "shade", port.names("march"), verdict))
+        yield _picture(port, "shade", port.names("march"), verdict)
     if port.has("color") or port.has("depth"):
-        clean = not any(judgement.wrong.any() for judgement in found if judgement.stage != "shade")
+        clean = not any(judgement.wrong.any() for judgement in before_shade)
         verdict = _resolve(port, hits, surfaces.hit[shown], color, clean, lost)
-        found.append(_picture(port, "resolve", port.names("march") + port.names("shade"), verdict))
-    return found
+        yield _picture(port, "resolve", port.names("march") + port.names("shade"), verdict)
 
 
 def _picture(port: Port, stage: str, replayed: tuple[str, ...], verdict: Verdict) -> Judgement:

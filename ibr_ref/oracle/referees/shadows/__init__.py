@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow
+from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow, up_to
 from ibr_ref.oracle.referees.shadows import replay_maps, replay_picture
 from ibr_ref.oracle.referees.shadows.image import Accepted
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
@@ -39,10 +39,13 @@ class ShadowsReferee:
         self._alone: Inputs | None = None
         self._accepted: Accepted | None = None
 
-    def judge_stages(self, case: Case, device: Device, handed: Handed) -> list[Judgement]:
+    def judge_stages(
+        self, case: Case, device: Device, handed: Handed, *, to_first_wrong: bool = False
+    ) -> list[Judgement]:
         """In order; a stage of several kinds of elements (cells, grids, texels) has a judgement for each."""
         given = Inputs(case, device, handed, self._of(case, device))
-        return [found for found in (judge(given) for judge in _JUDGES) if found is not None]
+        found = (judge(given) for judge in _JUDGES)
+        return up_to((judgement for judgement in found if judgement is not None), first_wrong=to_first_wrong)
 
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
         """The picture from the case alone."""

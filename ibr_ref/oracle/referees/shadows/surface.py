@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, unit, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, opposite, unit, uploaded
 from ibr_ref.oracle.accept.coverage import Fragments, fragments
 from ibr_ref.oracle.accept.seams import owners
 from ibr_ref.oracle.accept.winners import winners
@@ -76,7 +76,9 @@ class Objects:
         with np.errstate(divide="ignore", invalid="ignore"):
             found = unit(cross)
         return [
-            Bounded(np.nan_to_num(n.value), np.where(np.isfinite(n.value + n.error), n.error, 2.0), n.device)
+            Bounded(
+                np.nan_to_num(n.value), np.where(np.isfinite(n.value + n.error), n.error, opposite(n.device)), n.device
+            )
             for n in found
         ]
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow
+from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow, up_to
 from ibr_ref.oracle.referees.splatting import atlas, image, normals, raster, vertex
 from ibr_ref.oracle.referees.splatting.parameters import parameters
 from ibr_ref.oracle.referees.splatting.trace import trace
@@ -26,11 +26,12 @@ class SplattingReferee:
 
     stages: Sequence[str] = tuple(JUDGES)
 
-    def judge_stages(self, case: Case, device: Device, handed: Handed) -> list[Judgement]:
+    def judge_stages(
+        self, case: Case, device: Device, handed: Handed, *, to_first_wrong: bool = False
+    ) -> list[Judgement]:
         """Every stage of which an array is handed in, each fed with the port's own arrays of the stages before."""
-        return [
-            judge(case, device, handed) for arrays, judge in JUDGES.values() if any(name in handed for name in arrays)
-        ]
+        judges = [judge for arrays, judge in JUDGES.values() if any(name in handed for name in arrays)]
+        return up_to((judge(case, device, handed) for judge in judges), first_wrong=to_first_wrong)
 
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
         """The picture, and depth where it is handed in, from the case alone."""

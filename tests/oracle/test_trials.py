@@ -1,0 +1,82 @@
+"""Which profile a verdict rests on, for every set of devices that may explain a port; and which are not even tried."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.device import PROFILES, Device
+from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.trials import judge, tightest
+from tests.oracle.plain_referee import PlainReferee, box_case
+
+STAGES = {"raster.face": np.zeros(1), "march.steep": np.zeros(1)}
+
+
+class Explaining(PlainReferee):
+    """Every stage and the picture are right by some devices, and wrong by the others; keeps account of what it judged."""
+
+    def __init__(self, names: tuple[str, ...]) -> None:
+        self.names = names
+        self.asked: list[tuple[str, str]] = []
+
+    def _judge(self, stage: str, case: Case, device: Device, handed: Handed, names: tuple[str, ...]) -> Judgement:
+        self.asked.append((device.name, stage))
+        wrong = np.array([device.name not in self.names])
+        blame = np.where(wrong, 0, -1).astype(np.int8)
+        nothing, width = np.zeros(1, np.bool_), np.zeros(1)
+        return Judgement(
+            stage=stage, element="pixel", arrays=names, wrong=wrong, undecided=nothing, width=width, blame=blame
+        )
+
+
+SETS = [(*some, "gl") for n in range(5) for some in combinations(list(PROFILES)[:-1], n)]
+"""What gl does not explain nothing does: it grants the most."""
+
+
+@pytest.mark.parametrize("explaining", SETS, ids="-".join)
+def test_the_tightest_that_explains_is_found(explaining: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    referee = Explaining(explaining)
+    monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: referee)
+    found, tried = tightest(box_case(), {**STAGES, "color": np.zeros(1)})
+    assert found.device.name == min(explaining, key=list(PROFILES).index)
+    assert [j.stage for j in found.judgements] == ["raster", "march", "image"]
+    assert {name for name, wrong in tried.items() if not wrong} <= {*explaining}
+    for name in {*tried} - {*explaining}:  # a trial ends where it fails
+        assert [stage for device, stage in referee.asked if device == name] == ["raster"]
+
+
+@pytest.mark.parametrize("explaining", SETS, ids="-".join)
+def test_of_a_picture_alone_too(explaining: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: Explaining(explaining))
+    found, _ = tightest(box_case(), {"color": np.zeros(1)})
+    assert found.device.name == min(explaining, key=list(PROFILES).index)
+    assert [j.stage for j in found.judgements] == ["image"]
+
+
+def test_what_no_device_explains_is_judged_whole_by_the_loosest(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: Explaining(()))
+    found, tried = tightest(box_case(), {**STAGES, "color": np.zeros(1)})
+    assert (found.device.name, found.wrong) == ("gl", 3)
+    assert tried == {"ieee32": 1, "d3d11": 1, "gl": 3}
+    assert tightest(box_case(), {"color": np.zeros(1)})[1] == {"gl": 1}
+
+
+def test_the_loosest_grants_what_any_other_does() -> None:
+    loosest = PROFILES["gl"]
+    numbers = set(vars(loosest)) - {"name", "sources"}
+    for device in PROFILES.values():
+        assert device.subpixel_bits == loosest.subpixel_bits
+        assert all(getattr(device, name) <= getattr(loosest, name) for name in numbers), device.name
+
+
+@pytest.mark.parametrize("kept", [("color",), ("color", "depth"), ("depth",), ("march.steep",)])
+def test_a_picture_without_stages_is_judged_alone(kept: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    referee = Explaining(("gl",))
+    monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: referee)
+    judge(box_case(), {name: np.zeros(1) for name in kept}, PROFILES["gl"])
+    expected = {"color": "image", "march.steep": "march"}
+    assert [stage for _, stage in referee.asked] == [expected[name] for name in kept if name in expected]
