@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import pytest
 
 import ibr_ref
 from ibr_ref import displacement, models
@@ -80,3 +81,11 @@ class PlainReferee:
             return dataclasses.replace(case, scene=dataclasses.replace(case.scene, light=light))
 
         return [Parameter(name="light.ambient", value=case.scene.light.ambient, step=0.01, moved=moved)]
+
+
+def judges_all(patch: pytest.MonkeyPatch) -> PlainReferee:
+    """Let the whole engine judge by plain comparison."""
+    judge = PlainReferee()
+    for module in ("examination", "trials", "conventions", "bias"):
+        patch.setattr(f"ibr_ref.oracle.{module}.referee", lambda method: judge)
+    return judge

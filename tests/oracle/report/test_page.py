@@ -15,7 +15,7 @@ from PIL import Image
 
 from ibr_ref.oracle import report
 from ibr_ref.oracle.examination import Examination, examine
-from tests.oracle.plain_referee import box_case
+from tests.oracle.plain_referee import box_case, judges_all
 
 BROWSER = next(
     (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
@@ -25,11 +25,8 @@ BROWSER = next(
 @pytest.fixture(scope="module")
 def failed() -> Examination:
     """A port whose search goes wrong in a square."""
-    from tests.oracle.plain_referee import PlainReferee
-
     patch = pytest.MonkeyPatch()
-    for module in ("examination", "conventions", "bias"):
-        patch.setattr(f"ibr_ref.oracle.{module}.referee", lambda method: PlainReferee())
+    judges_all(patch)
     case = box_case()
     frame = case.frame
     handed = {"color": np.floor(255 * frame.color + 0.5).astype(np.uint8)}
