@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
     from ibr_ref.oracle.self_test import MutantResult, VariantResult
 
-KINDS = ("easy", "typical", "adversarial")
-"""Of cases: the real-sized ones would take an hour."""
+MUTANT_KINDS = ("easy", "typical", "adversarial")
+"""Cases on which mutants are tried; variants are on all. The real-sized ones would take an hour."""
 
 
 def run(method: str | None) -> int:
@@ -31,10 +31,10 @@ def run(method: str | None) -> int:
     mutants: list[MutantResult] = []
     with progress(self_test.size(methods)) as step:
         for name in methods:
-            for variant in self_test.try_variants(name, kinds=KINDS):
+            for variant in self_test.try_variants(name):
                 step(f"{name}: variant {variant.name}")
                 variants.append(variant)
-            for mutant in self_test.try_mutants(name, kinds=KINDS):
+            for mutant in self_test.try_mutants(name, kinds=MUTANT_KINDS):
                 step(f"{name}: mutant {mutant.mutant.name}")
                 mutants.append(mutant)
     console = Console(width=160, soft_wrap=False)

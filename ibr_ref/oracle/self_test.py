@@ -65,10 +65,10 @@ def port_output(case: Case, port: type[PlainPort], variant: Variant | None = Non
     return arrays
 
 
-def try_variants(method: str, *, kinds: Sequence[str] | None = None) -> Iterator[VariantResult]:
-    """Every variant of a method on its cases (of some kinds), by the profile that it states."""
+def try_variants(method: str) -> Iterator[VariantResult]:
+    """Every variant of a method on all its cases, by the profile that it states."""
     module = import_module(f"ibr_ref.oracle.ports.{method}")
-    cases = _cases(method, kinds)
+    cases = [build(name) for name in names(method)]
     for variant in module.VARIANTS:
         accused, pixels = [], 0
         for case in cases:
@@ -92,10 +92,10 @@ def try_variants(method: str, *, kinds: Sequence[str] | None = None) -> Iterator
         )
 
 
-def try_mutants(method: str, *, kinds: Sequence[str] | None = None) -> Iterator[MutantResult]:
-    """Every mutant of a method."""
+def try_mutants(method: str, *, kinds: Sequence[str]) -> Iterator[MutantResult]:
+    """Every mutant of a method, on its cases of some kinds."""
     module = import_module(f"ibr_ref.oracle.ports.{method}")
-    cases = _cases(method, kinds)
+    cases = [case for case in map(build, names(method)) if case.kind in kinds]
     for mutant in module.MUTANTS:
         yield _try_mutant(method, mutant, cases)
 
@@ -128,11 +128,6 @@ def _try_mutant(method: str, mutant: Mutant, cases: Sequence[Case]) -> MutantRes
         image_case=by_image[0] if by_image else None,
         image_pixels=by_image[1] if by_image else 0,
     )
-
-
-def _cases(method: str, kinds: Sequence[str] | None) -> list[Case]:
-    cases = [build(name) for name in names(method)]
-    return [case for case in cases if kinds is None or case.kind in kinds]
 
 
 def size(methods: Sequence[str]) -> int:
