@@ -129,7 +129,7 @@ class Verdict(_Record):
     """Of the picture's accepted colours."""
 
     def words(self) -> str:
-        """The verdict for people, some ten lines."""
+        """The verdict for people: some ten lines, and how the witness is computed."""
         from ibr_ref.oracle.words import words
 
         return words(self)

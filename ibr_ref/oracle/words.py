@@ -7,14 +7,15 @@ from collections import Counter
 from ibr_ref.oracle.verdict import Outcome, StageVerdict, Verdict, Witness
 
 
-def words(verdict: Verdict) -> str:
-    """Some ten lines: what, where first, how many, why one of them is wrong, what would explain it."""
+def words(verdict: Verdict, *, trace: bool = True) -> str:
+    """Some ten lines: what, where first, how many, one that is wrong, what would explain it; and that one's `trace`."""
     lines = [_headline(verdict)]
     lines += [f"  {reason}" for reason in verdict.reasons]
     parts = Counter(stage.stage for stage in verdict.stages)
     lines += [_stage_line(stage, alone=parts[stage.stage] == 1) for stage in verdict.stages]
     if verdict.witness is not None:
-        lines += _witness_lines(verdict.witness)
+        lines.append(_witness_line(verdict.witness))
+        lines += _trace_lines(verdict.witness) if trace else []
     for convention in verdict.conventions:
         if convention.explains:
             left = "all of it" if convention.wrong == 0 else f"all but {convention.wrong:,} pixels"
@@ -59,11 +60,15 @@ def _plural(element: str) -> str:
     return {"vertex": "vertices", "axis": "axes"}.get(element, f"{element}s")
 
 
-def _witness_lines(witness: Witness) -> list[str]:
-    lines = [
+def _witness_line(witness: Witness) -> str:
+    return (
         f"  Witness: {witness.element} {list(witness.index)}, {witness.array}: "
         f"reference {witness.reference}, port {witness.port}."
-    ]
+    )
+
+
+def _trace_lines(witness: Witness) -> list[str]:
+    lines = []
     for step in witness.trace:
         decided = ""
         if step.margin is not None:

@@ -83,6 +83,15 @@ def planes(examination: Examination) -> Mapping[str, tuple[NDArray[np.generic] |
     return found
 
 
+def blamed(examination: Examination, array: str) -> NDArray[np.bool_]:
+    """(H, W) where the array is the first in which a wrong stage, or the picture, disagrees."""
+    result = np.zeros(examination.case.frame.color.shape[:2], np.bool_)
+    for judgement in examination.judgements:
+        if judgement.wrong.shape == result.shape and array in judgement.arrays:
+            result |= judgement.wrong & (judgement.blame == judgement.arrays.index(array))
+    return result
+
+
 def _bytes(color: NDArray[np.generic]) -> Bytes:
     if color.dtype == np.uint8:
         return np.asarray(color, np.uint8)

@@ -36,7 +36,7 @@
   const data = JSON.parse(document.getElementById("data").textContent);
   const status = await unpack(data.status);
   const arrays = await Promise.all(data.arrays.map(async (a) => (
-    { name: a.name, reference: await unpack(a.reference), port: await unpack(a.port) })));
+    { name: a.name, reference: await unpack(a.reference), port: await unpack(a.port), wrong: await unpack(a.wrong) })));
 
   const shown = (plane, pixel) => {
     if (plane === null) return "";
@@ -50,11 +50,10 @@
     document.getElementById("status").textContent = state;
     const body = document.getElementById("values");
     body.textContent = "";
-    for (const { name, reference, port } of arrays) {
+    for (const { name, reference, port, wrong } of arrays) {
       const row = body.insertRow();
-      const ours = shown(reference, pixel), theirs = shown(port, pixel);
-      for (const text of [name, ours, theirs]) row.insertCell().textContent = text;
-      row.classList.toggle("differs", port !== null && ours !== theirs && (reference.integers || state === "wrong"));
+      for (const text of [name, shown(reference, pixel), shown(port, pixel)]) row.insertCell().textContent = text;
+      row.classList.toggle("wrong", wrong !== null && wrong.numbers[pixel] !== 0);
     }
     const size = viewer.clientWidth / width;
     Object.assign(cross.style, { left: x * size + "px", top: y * size + "px", width: size + "px", height: size + "px" });

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ibr_ref.io.files import atomic
 from ibr_ref.oracle.examination import Examination
-from ibr_ref.oracle.report.layers import layers, planes, stage_layer
+from ibr_ref.oracle.report.layers import blamed, layers, planes, stage_layer
+from ibr_ref.oracle.words import words
 
 MOST_BYTES = 96 * 2**20
 """Of the inspector's numbers before they are packed: what a browser holds with ease. Stages beyond it are left out."""
@@ -37,7 +38,7 @@ def page(examination: Examination) -> str:
     height, width = examination.case.frame.color.shape[:2]
     return environment.from_string(_asset("page.html")).render(
         verdict=verdict,
-        words=verdict.words(),
+        words=words(verdict, trace=False),  # which has a table of its own
         about=examination.case.about,
         layers=pictures,
         compared=len(pictures) > 1,
@@ -69,11 +70,12 @@ def _inspector(examination: Examination) -> dict[str, Any]:
     image = examination.judgement("image")
     arrays, room = [], MOST_BYTES
     for name, pair in planes(examination).items():
-        packed = [None if array is None else _pack(array) for array in pair]
+        wrong = None if pair[1] is None else blamed(examination, name)
+        packed = [None if array is None else _pack(array) for array in (*pair, wrong)]
         room -= sum(p["bytes"] for p in packed if p is not None)
         if room < 0:
             break
-        arrays.append({"name": name, "reference": packed[0], "port": packed[1]})
+        arrays.append({"name": name, "reference": packed[0], "port": packed[1], "wrong": packed[2]})
     status = None
     if image is not None:
         status = _pack((image.undecided + 2 * image.wrong).astype(np.int32))

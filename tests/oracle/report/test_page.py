@@ -97,6 +97,13 @@ def values(dom: str) -> dict[str, tuple[str, str]]:
     return {name: (unescape(ours), unescape(theirs)) for name, ours, theirs in rows}
 
 
+def red(dom: str) -> list[str]:
+    """Arrays that the inspector calls wrong."""
+    return sorted(
+        re.findall(r'<tr class="wrong"><td>(.*?)</td>', dom[dom.index('id="values"') :].partition("</tbody>")[0])
+    )
+
+
 def test_the_inspector_shows_reference_and_port(browser: Callable[..., str], failed: Examination) -> None:
     dom = browser("45,33", "--dump-dom")
     assert 'data-ready="yes"' in dom
@@ -108,6 +115,8 @@ def test_the_inspector_shows_reference_and_port(browser: Callable[..., str], fai
     assert found["color"][1] == "1, 0, 1"
     assert found["shade.normal"][1] == ""
     assert found["raster.face"][0] == found["raster.face"][1]
+    assert red(dom) == ["color", "march.hit_index"]
+    assert red(browser("3,60", "--dump-dom")) == []
     assert re.search(r'id="status">undecided<', browser("45,1", "--dump-dom"))
     assert re.search(r'id="status">right<', browser("3,60", "--dump-dom"))
 
