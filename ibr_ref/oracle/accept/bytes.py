@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded
+from ibr_ref.oracle.device import UNIT
 
 
 def allows_color(color: Bounded, found: NDArray[np.generic]) -> NDArray[np.bool_]:
@@ -25,3 +26,15 @@ def allows_color(color: Bounded, found: NDArray[np.generic]) -> NDArray[np.bool_
 def color_bytes(color: NDArray[np.float64]) -> NDArray[np.uint8]:
     """Colours as the conventions make bytes of them: floor(255 c + 0.5) after clamping."""
     return np.floor(255.0 * np.clip(color, 0.0, 1.0) + 0.5).astype(np.uint8)
+
+
+def read_back(color: NDArray[np.float64]) -> NDArray[np.generic]:
+    """The bytes of a picture of floats that are all k / 255: it was read back from bytes. Another one as it is."""
+    steps = 255.0 * color
+    if not np.isfinite(steps).all() or steps.min(initial=0.0) < 0.0 or steps.max(initial=0.0) > 255.0:
+        return color
+    nearest = np.rint(steps)
+    # k / 255 as a float32, and its product with 255: two roundings.
+    if (np.abs(steps - nearest) > 2.0 * UNIT * np.maximum(nearest, 1.0)).any():
+        return color
+    return nearest.astype(np.uint8)

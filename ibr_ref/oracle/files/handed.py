@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.oracle.accept.bytes import read_back
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.files.npy import Accept, Header
 from ibr_ref.oracle.files.pictures import turned
@@ -58,12 +59,15 @@ class Slot:
         return lambda header: self.check(header, file)
 
     def converted(self, array: NDArray[Any], file: object) -> NDArray[Any]:
-        """The array in the reference's type, floats as float64; colours that are bytes stay bytes."""
+        """The array in the reference's type, floats as float64; colours that are, or were, bytes as bytes."""
         self.check(Header(array.dtype, array.shape, 0), file)
         if self.name == "color":
             array = array[..., :3]
+        result: NDArray[Any]
         if array.dtype.kind == "f":
             result = array.astype(np.float64)
+            if self.name == "color":
+                result = read_back(result)
         elif self.name == "color":
             result = array.copy()
         else:

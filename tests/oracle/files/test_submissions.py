@@ -33,6 +33,24 @@ def test_the_final_image_alone(maps_case: Case, tmp_path: Path) -> None:
     assert submission.profile is None
 
 
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_floats_that_were_bytes_are_bytes(maps_case: Case, dtype: type) -> None:
+    """A framebuffer of bytes that was read back as floats: rounded by its conversion, like a PNG."""
+    codes = color_bytes(maps_case.frame.color)
+    handed = submission_from_arrays(maps_case, color=(codes / 255.0).astype(dtype)).handed["color"]
+    assert handed.dtype == np.uint8
+    np.testing.assert_array_equal(handed, codes)
+
+
+@pytest.mark.parametrize("other", [100.0 / 255.0 + 1e-6, -1.0 / 255.0, 256.0 / 255.0])
+def test_one_other_float_makes_it_a_picture_of_floats(maps_case: Case, other: float) -> None:
+    color = (color_bytes(maps_case.frame.color) / 255.0).astype(np.float32)
+    color[3, 4, 1] = other
+    handed = submission_from_arrays(maps_case, color=color).handed["color"]
+    assert handed.dtype == np.float64
+    np.testing.assert_array_equal(handed, color)
+
+
 def test_all_in_one_archive(full_case: Case, tmp_path: Path) -> None:
     full_case.frame.save_stages(tmp_path / "all.npz")
     for place in (tmp_path, tmp_path / "all.npz"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.splatting import CASES
 from ibr_ref.oracle.device import PROFILES
@@ -35,6 +36,8 @@ def drawn(name: str, policy: Policy = Policy(), port: Any = Port) -> Arrays:  # 
     """What a plain port makes of a case."""
     described = case(name)
     arrays: Arrays = port(described.scene, described.params, policy, described.inputs).render()
+    if policy.color_bits == 8:
+        arrays["color"] = color_bytes(arrays["color"])
     return arrays
 
 

@@ -123,7 +123,7 @@ def _judged(
     pixels = shape[0] * shape[1]
     agrees, bad = np.ones(len(found.pixel), np.bool_), {}
     if "color" in handed:
-        picture = as_bytes(np.asarray(handed["color"])).reshape(-1, 3)
+        picture = np.asarray(handed["color"]).reshape(-1, 3)
         agrees &= allows_color(found.color, picture[found.pixel]).all(axis=1)
         bad["color"] = _without(found, agrees, pixels)
     if "depth" in handed:
@@ -146,17 +146,3 @@ def _without(found: Outcomes, agrees: Bools, pixels: int) -> Bools:
     left = ~found.judged
     left[found.pixel[agrees]] = True
     return ~left
-
-
-def as_bytes(color: NDArray[np.generic]) -> NDArray[np.generic]:
-    """A picture of floats that are all k / 255 was read back from bytes, and is judged as such."""
-    if color.dtype == np.uint8:
-        return color
-    steps = 255.0 * color.astype(np.float64)
-    if not np.isfinite(steps).all() or steps.min() < 0.0 or steps.max() > 255.0:
-        return color
-    nearest = np.rint(steps)
-    # k / 255 as a float32, and its product with 255: two roundings.
-    if (np.abs(steps - nearest) > 2.0 * UNIT * np.maximum(nearest, 1.0)).any():
-        return color
-    return nearest.astype(np.uint8)

@@ -8,7 +8,6 @@ from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, TraceRow
-from ibr_ref.oracle.referees.splatting.image import as_bytes
 from ibr_ref.oracle.referees.splatting.place import Landed, landed, placed
 from ibr_ref.oracle.referees.splatting.spans import axis, border
 from ibr_ref.oracle.referees.splatting.splats import Contest, buffered, contest
@@ -45,7 +44,7 @@ def pixel(case: Case, device: Device, fed: Handed, handed: Handed, at: tuple[int
         own = np.asarray(handed["vertex.color"])[shown] if "vertex.color" in handed else None
         rows += colored(case, device, one, placed(case, device, one), own)
     if "color" in handed:
-        rows.append(_shown("picture: colour", case.frame.color[at], as_bytes(np.asarray(handed["color"]))[at]))
+        rows.append(_shown("picture: colour", case.frame.color[at], np.asarray(handed["color"])[at]))
     if "depth" in handed:
         rows.append(_shown("picture: depth", case.frame.depth[at], np.asarray(handed["depth"])[at]))
     return rows
