@@ -30,7 +30,8 @@ class Policy:
     reciprocal: bool = False
     """A quotient is the product with the rounded reciprocal; a square root is the reciprocal of an inverse root."""
     jitter: int = 0
-    """Every result moves by up to so many units in the last place, at random."""
+    """Every result moves by up to so many units in the last place, at random, equal ones alike: a device that is given the
+    same numbers twice gives the same result, and a corner that two triangles share is one point."""
     seed: int = 0
     """Of the jitter."""
     weight_bits: int | None = None
@@ -49,12 +50,19 @@ class Policy:
     """8: colours are rounded to bytes."""
 
 
+def _scattered(array: Floats, seed: int) -> NDArray[np.uint64]:
+    """The same number for the same bits, and else any: splitmix64 (Steele, Lea & Flood 2014)."""
+    bits = np.array(array, np.float64, ndmin=1).view(np.uint64) + np.uint64(seed * 0x9E3779B97F4A7C15 % 2**64)
+    for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
+        bits = (bits ^ (bits >> np.uint64(shift))) * np.uint64(factor)
+    return np.asarray(bits ^ (bits >> np.uint64(31)), np.uint64).reshape(np.shape(array))
+
+
 class Arithmetic:
     """Operations as a policy makes them. Arguments are numbers or arrays that broadcast."""
 
     def __init__(self, policy: Policy) -> None:
         self.policy = policy
-        self._random = np.random.default_rng(policy.seed)
 
     def number(self, value: ArrayLike) -> Floats:
         """A value as it is uploaded: rounded to the nearest float, never jittered."""
@@ -64,12 +72,15 @@ class Arithmetic:
     def round(self, value: ArrayLike) -> Floats:
         """A result of one operation."""
         array = self.number(value)
-        if self.policy.jitter and self.policy.float_bits == 32:
-            unit = np.spacing(np.abs(array).astype(np.float32)).astype(np.float64)
-            steps = self._random.integers(-self.policy.jitter, self.policy.jitter + 1, array.shape)
-            moves = np.isfinite(array) & (array != 0.0)  # a step from 0 is a denormal number, which devices flush to 0
-            array = self.number(np.where(moves, array + steps * unit, array))
-        return array
+        jitters = self.policy.jitter and self.policy.float_bits == 32
+        return self.moved(array, self.policy.jitter) if jitters else array
+
+    def moved(self, array: Floats, most: int) -> Floats:
+        """Each number by up to `most` units in the last place; how far follows from its bits (see `Policy.jitter`)."""
+        unit = np.spacing(np.abs(array).astype(np.float32)).astype(np.float64)
+        steps = (_scattered(array, self.policy.seed) % np.uint64(2 * most + 1)).astype(np.int64) - most
+        moves = np.isfinite(array) & (array != 0.0)  # a step from 0 is a denormal number, which devices flush to 0
+        return self.number(np.where(moves, array + steps * unit, array))
 
     def add(self, a: ArrayLike, b: ArrayLike) -> Floats:
         """A + b."""

@@ -20,19 +20,14 @@ from ibr_ref.oracle.ports.faults import Variant
 class _LooseQuotients(Arithmetic):
     """Sums and products are exact to half a unit, quotients and roots to two and a half."""
 
-    def _loose(self, exact: Floats) -> Floats:
-        unit = np.spacing(np.abs(exact).astype(np.float32)).astype(np.float64)
-        steps = self._random.integers(-2, 3, exact.shape)
-        return self.number(np.where(np.isfinite(exact) & (exact != 0.0), exact + steps * unit, exact))
-
     def divide(self, a: ArrayLike, b: ArrayLike) -> Floats:
         """A / b; by powers of two it is exact, as shaders multiply by constants."""
         exact = super().divide(a, b)
-        return exact if np.ndim(b) == 0 and np.frexp(b)[0] == 0.5 else self._loose(exact)
+        return exact if np.ndim(b) == 0 and np.frexp(b)[0] == 0.5 else self.moved(exact, 2)
 
     def root(self, a: ArrayLike) -> Floats:
         """The square root."""
-        return self._loose(super().root(a))
+        return self.moved(super().root(a), 2)
 
 
 class _LooseQuotientsPort(Port):

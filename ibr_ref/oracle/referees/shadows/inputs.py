@@ -53,7 +53,7 @@ class Inputs:
     def lenses(self) -> list[Lens]:
         """What each sample sees."""
         size, light = int(self.case.params.map_size), self.case.scene.light
-        return [Lens.of(light.camera(size, s.position), s.position) for s in self.samples]
+        return [Lens.of(light.camera(size, s.position), s.sizes) for s in self.samples]
 
     @cached_property
     def seen(self) -> Seen:

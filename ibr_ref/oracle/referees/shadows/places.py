@@ -24,6 +24,8 @@ class Sample:
 
     position: Floats
     """(3,)."""
+    sizes: Floats
+    """(3,) of the terms that it is the sum of: what their roundings are relative to."""
     displacement: list[Bounded]
     """x and y of position - centre along the offset axes."""
 
@@ -40,18 +42,21 @@ def samples(case: Any, device: Device) -> list[Sample]:
     centre, edges = (np.asarray(a, np.float64) for a in scene.light.arrays)
     axes = [[uploaded(n, device) for n in axis] for axis in np.asarray(scene.axes, np.float64)]
     if isinstance(params.light_samples, np.ndarray):
-        moves = [[uploaded(n, device) for n in position] for position in params.light_samples]
-        moves = [[n - uploaded(c, device) for n, c in zip(move, centre, strict=True)] for move in moves]
-        positions = list(np.asarray(params.light_samples, np.float64))
-    else:
-        steps = {1: (), 5: (-STEP, STEP), 9: (-STEP, 0.0, STEP)}[int(params.light_samples)]
-        around = [(g, h) for h in steps for g in steps if (g, h) != (0.0, 0.0)]
-        positions = [centre, *(centre + (g * edges[0] + h * edges[1]) for g, h in around)]
-        moves = [[exact(0.0, device)] * 3, *(_moved(g, h, edges, centre, device) for g, h in around)]
-    return [
-        Sample(position, list(on_axes(axes, move)) if i or len(positions) > 1 else [exact(0.0, device)] * 2)
-        for i, (position, move) in enumerate(zip(positions, moves, strict=True))
-    ]
+        given = np.asarray(params.light_samples, np.float64)
+        moves = [[uploaded(n, device) - uploaded(c, device) for n, c in zip(p, centre, strict=True)] for p in given]
+        return [Sample(p, np.abs(p), list(on_axes(axes, move))) for p, move in zip(given, moves, strict=True)]
+    nowhere = [exact(0.0, device)] * 2
+    if int(params.light_samples) == 1:
+        return [Sample(centre, np.abs(centre), nowhere)]
+    steps = {5: (-STEP, STEP), 9: (-STEP, 0.0, STEP)}[int(params.light_samples)]
+    result = []
+    for g, h in [(0.0, 0.0), *((g, h) for h in steps for g in steps if (g, h) != (0.0, 0.0))]:
+        # Where operations are correctly rounded the centre plus nothing is the centre.
+        still = (g, h) == (0.0, 0.0) and device.operation <= 1.0
+        displacement = nowhere if still else list(on_axes(axes, _moved(g, h, edges, centre, device)))
+        sizes = np.abs(centre) + np.abs(g * edges[0]) + np.abs(h * edges[1])
+        result.append(Sample(centre + (g * edges[0] + h * edges[1]), sizes, displacement))
+    return result
 
 
 def _moved(g: float, h: float, edges: Floats, centre: Floats, device: Device) -> list[Bounded]:

@@ -19,6 +19,10 @@ MATRIX_ROUNDINGS = 13.0
 rounding of its entries; the same again with p or B (a product and three sums); one rounding of the result. B, the bias
 matrix, has two terms a row with entries of 1/2, which cost nothing: a sum more."""
 
+EYE_ROUNDINGS = 6.0
+"""Besides, of the terms of -axis . eye that a port computes itself: the eye's two products and sum (g e0 + h e1, and that
+added to the centre), and a product with two sums."""
+
 
 def gamma(device: Device, operations: float, quotients: float = 0.0) -> float:
     """Largest relative error of so many operations in a row (Higham 2002, lemma 3.1)."""
@@ -37,11 +41,11 @@ class Lens:
 
     @classmethod
     def of(cls, camera: Any, eye: ArrayLike | None = None) -> Lens:
-        """A camera's. eye: with it the port has computed the last column, -axis . eye, itself."""
+        """A camera's. eye (3,), the sizes of its terms: with it the port has computed the last column, -axis . eye."""
         view, clip = np.asarray(camera.view_from_world, np.float64), np.asarray(camera.clip_from_view, np.float64)
         absolute = np.abs(view)
         if eye is not None:
-            absolute[:3, 3] = absolute[:3, :3] @ np.abs(np.asarray(eye, np.float64)[:3])
+            absolute[:3, 3] = absolute[:3, :3] @ np.asarray(eye, np.float64) * (1.0 + EYE_ROUNDINGS / MATRIX_ROUNDINGS)
         return cls(view, clip, np.abs(clip) @ absolute)
 
     def clip_of(self, point: Sequence[Bounded]) -> list[Bounded]:
