@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.displacement.variants import VARIANTS
+from tests.oracle.devices import random_policy
 from tests.oracle.displacement.drawn import REFEREE, SMALL, case, draw, image, profiles_from, wrong
 
 PICTURES = 7
@@ -28,25 +28,6 @@ def test_variants_pass(name: str) -> None:
     assert not accused
 
 
-def random_policy(random: np.random.Generator) -> tuple[Policy, str]:
-    """Any device, and the tightest profile that allows it (the kinds of `arithmetic.Policy`, by device.py's numbers)."""
-    profile = str(random.choice(["ieee32", "vulkan", "gl"]))
-    loose, loosest = profile != "ieee32", profile == "gl"
-    return Policy(
-        backwards=bool(random.integers(2)),
-        fused=bool(random.integers(2)),
-        reciprocal=loose and bool(random.integers(2)),
-        jitter=int(random.integers(3)) if loosest else 0,
-        seed=int(random.integers(1 << 16)),
-        weight_bits=8 if loose and random.integers(2) else None,
-        weight_rounding=str(random.choice(["nearest", "down"])),
-        subpixel_rounding=str(random.choice(["even", "up", "down"])) if loose else "even",
-        snapped_varyings=not (loosest and random.integers(2)),
-        depth_bits=24 if loose and random.integers(2) else None,
-        color_bits=8 if random.integers(2) else None,
-    ), profile
-
-
 def test_no_pixel_of_a_million_escapes_its_accepted_set() -> None:
     random = np.random.default_rng(17)
     pairs, escaped = 0, []
@@ -59,3 +40,12 @@ def test_no_pixel_of_a_million_escapes_its_accepted_set() -> None:
             pairs += arrays["depth"].size
     assert not escaped
     assert pairs >= 1_000_000
+
+
+def test_random_devices_pass_stage_by_stage() -> None:
+    random = np.random.default_rng(21)
+    for name in SMALL:
+        for _ in range(3):
+            policy, profile = random_policy(random)
+            judged = REFEREE.judge_stages(case(name), PROFILES[profile], draw(name, policy))
+            assert not wrong(judged), (name, policy)

@@ -10,6 +10,7 @@ import pytest
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.faults import Mutant, Variant
 from ibr_ref.oracle.ports.shadows import MUTANTS, VARIANTS, Port
+from tests.oracle.devices import random_policy
 from tests.oracle.judgements import complaints, first_wrong, in_bytes, picture
 from tests.oracle.shadows.judged import REAL, SMALL, drawn, image, plain, stages
 
@@ -75,39 +76,27 @@ def test_nearly_all_bugs_are_killed_and_named() -> None:
     assert len(unseen) <= HIDDEN * len(shown), unseen
 
 
-def random_policy(random: np.random.Generator, profile: str) -> Policy:
-    """A device that the profile has room for."""
-    backwards, fused = (bool(random.integers(2)) for _ in range(2))
-    if profile == "ieee32":
-        return Policy(backwards=backwards, fused=fused)
-    return Policy(
-        backwards=backwards,
-        fused=fused,
-        reciprocal=bool(random.integers(2)),
-        weight_bits=8 if random.integers(2) else None,
-        weight_rounding=str(random.choice(["nearest", "down"])),
-        subpixel_rounding=str(random.choice(["even", "up", "down"])),
-        depth_bits=24 if random.integers(2) else None,
-        color_bits=8 if random.integers(3) == 0 else None,
-        jitter=int(random.integers(3)) if profile == "gl" else 0,
-        snapped_varyings=bool(random.integers(2)) if profile == "gl" else True,
-        seed=int(random.integers(1 << 30)),
-    )
-
-
 def test_a_million_pixels_of_random_devices_are_all_accepted() -> None:
     random = np.random.default_rng(20)
     pixels, widths = 0, []
     for profile, share in (("ieee32", 2), ("vulkan", 4), ("gl", 4)):
         for name in SMALL:
             for _ in range(share):
-                policy = random_policy(random, profile)
+                policy, _ = random_policy(random, profile)
                 judged = image(name, picture(drawn(name, policy)), profile)
                 assert complaints([judged]) == [], (name, policy)
                 widths.append(np.median(judged.width))
                 pixels += judged.wrong.size
     assert pixels >= 1_000_000
     assert np.median(widths) < 1e-3, "the accepted sets are too wide to say anything"
+
+
+def test_random_devices_pass_stage_by_stage() -> None:
+    random = np.random.default_rng(21)
+    for name in SMALL:
+        for _ in range(3):
+            policy, profile = random_policy(random)
+            assert complaints(stages(name, drawn(name, policy), profile)) == [], (name, policy)
 
 
 def test_a_looser_device_forgives_more() -> None:

@@ -10,6 +10,7 @@ import pytest
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.faults import Mutant, Variant
 from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port
+from tests.oracle.devices import random_policy
 from tests.oracle.judgements import complaints, first_wrong, in_bytes, picture
 from tests.oracle.splatting.judged import SMALL, case, drawn, image, stages
 
@@ -71,25 +72,6 @@ def test_nearly_all_bugs_are_killed_and_named() -> None:
     assert len(survivors) <= SURVIVORS * count, survivors
     assert len(misnamed) <= SURVIVORS * count, misnamed
     assert len(unseen) <= HIDDEN * count, unseen
-
-
-def random_policy(random: np.random.Generator) -> tuple[Policy, str]:
-    """A device, and the tightest profile that has room for it."""
-    profile = str(random.choice(["ieee32", "vulkan", "gl"]))
-    backwards, fused = (bool(random.integers(2)) for _ in range(2))
-    if profile == "ieee32":
-        return Policy(backwards=backwards, fused=fused), profile
-    policy = Policy(
-        backwards=backwards,
-        fused=fused,
-        reciprocal=bool(random.integers(2)),
-        subpixel_rounding=str(random.choice(["even", "up", "down"])),
-        depth_bits=24 if random.integers(2) else None,
-        color_bits=8 if random.integers(3) == 0 else None,
-        jitter=int(random.integers(3)) if profile == "gl" else 0,
-        seed=int(random.integers(1 << 30)),
-    )
-    return policy, profile
 
 
 def test_a_million_pixels_of_random_devices_are_all_accepted() -> None:
