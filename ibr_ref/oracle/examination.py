@@ -40,7 +40,7 @@ class Examination:
 
 
 def examine(case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = ()) -> Examination:
-    """Judge a port's arrays.
+    """Judge a port's arrays, as `submission_from_arrays` or `load_submission` hands them on.
 
     profile: the device that the port declares; without one, the tightest that explains every element is sought, and a
     port that not even the loosest explains fails by that. problems: what made files of the submission unusable; with any,
@@ -131,13 +131,14 @@ def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -
     index = tuple(int(i) for i in (clear if len(clear) else np.argwhere(judgement.wrong))[0])
     array = judgement.arrays[max(int(judgement.blame[index]), 0)]
     rows = referee(case.method).trace(case, device, handed, judgement.stage, index)
+    bytes_ = array == "color" and np.asarray(handed[array]).dtype == np.uint8
     return Witness(
         stage=judgement.stage,
         element=judgement.element,
         index=index,
         array=array,
         reference=_shown(_expected(case, array), index),
-        port=_shown(handed.get(array), index),
+        port=_shown(handed.get(array), index) + (" / 255" if bytes_ else ""),
         trace=tuple(
             TraceStep(step=r.step, reference=r.reference, port=r.port, margin=r.margin, bound=r.bound, note=r.note)
             for r in rows

@@ -98,7 +98,7 @@ class Referee(Protocol):
     ) -> list[Judgement]:
         """Every stage of which an array is handed in, in order, each fed with the port's own arrays of the stages before.
 
-        to_first_wrong: end with the first stage that has a wrong element; those after it are not even computed.
+        to_first_wrong: end with the first judgement that has a wrong element; those after it are not even computed.
         """
 
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:

@@ -9,11 +9,10 @@ from ibr_ref.oracle.device import PROFILES, Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees import referee
 
-LOOSEST = "gl"
-"""It grants what any other does: what it does not explain is wrong, and no other is tried after it has failed."""
-TIGHT = ("ieee32", "d3d11")
-"""By one of these most right ports are explained. With stages they are tried before the loosest: where they fail, they
-mostly do so in one of the first stages. A picture takes all profiles the same time, and a broken one only the loosest."""
+TIGHT, LOOSEST = [*PROFILES][:2], [*PROFILES][-1]
+"""What the loosest does not explain is wrong, and no other is tried after it has failed. By one of the tight two most right
+ports are explained: with stages they are tried before it, because where they fail they mostly do so in one of the first
+stages. A picture takes all profiles the same time, and a broken one only the loosest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +21,8 @@ class Trial:
 
     device: Device
     judgements: list[Judgement]
-    """The stages in order, then "image" where a colour was handed in; of a device that was tried up to the first wrong
-    stage, none after that."""
+    """The stages in order, then "image" where a colour was handed in; none after the first that is wrong, where no more was
+    asked for."""
 
     @property
     def wrong(self) -> int:
@@ -52,7 +51,8 @@ def _picture_alone(handed: Handed) -> bool:
 def tightest(case: Case, handed: Handed) -> tuple[Trial, dict[str, int]]:
     """The tightest profile that leaves no element unexplained, or the loosest of all; and what each one tried left.
 
-    Trials end with the first wrong stage, but the loosest's: what it does not explain is wrong, and the verdict rests on it.
+    Trials end with the first judgement that is wrong, but the loosest's: what it does not explain is wrong, and the verdict
+    rests on it.
     """
     tried: dict[str, int] = {}
 

@@ -116,7 +116,7 @@ class Verdict(_Record):
     """Whether the port, or the caller, named the profile."""
     tried: dict[str, int] = {}
     """Profiles in the order in which they were tried, and how many elements each leaves unexplained: all of them where the
-    verdict is by that profile, else those of the first wrong stage."""
+    verdict is by that profile, else those of the first entry of `stages` that it calls wrong."""
     stages: tuple[StageVerdict, ...] = ()
     first_wrong_stage: str | None = None
     witness: Witness | None = None

@@ -37,7 +37,8 @@ def _headline(verdict: Verdict) -> str:
     head = f"{verdict.outcome}: {verdict.case}"
     if verdict.outcome is Outcome.INCONCLUSIVE:
         return f"{head}, the submission cannot be judged."
-    how = "declared" if verdict.declared else "the loosest tried" if verdict.outcome is Outcome.FAIL else "the tightest"
+    explains = verdict.profile is not None and verdict.tried.get(verdict.profile) == 0
+    how = "declared" if verdict.declared else "the tightest" if explains else "the loosest"
     if verdict.outcome is Outcome.PASS:
         return f"{head}, every element is what a correct port may have on {verdict.profile} ({how})."
     return f"{head}, first wrong in stage {verdict.first_wrong_stage}, judged by {verdict.profile} ({how})."

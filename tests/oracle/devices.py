@@ -11,10 +11,13 @@ def random_policy(random: np.random.Generator, profile: str | None = None) -> tu
     """Any device that a profile (any) has room for, by the numbers of device.py, and that profile."""
     profile = profile or str(random.choice(["ieee32", "d3d11", "vulkan", "webgpu", "gl"]))
     loose, loosest = profile != "ieee32", profile == "gl"
+    quotients = str(random.choice(["rounded", "reciprocal", "loose"])) if profile in ("vulkan", "webgpu", "gl") else ""
     return Policy(
         backwards=bool(random.integers(2)),
         fused=bool(random.integers(2)),
-        reciprocal=loose and profile != "d3d11" and bool(random.integers(2)),
+        reciprocal=quotients == "reciprocal",
+        loose=2 if quotients == "loose" else 0,
+        truncated=profile == "d3d11" and bool(random.integers(2)),
         jitter=int(random.integers(3)) if loosest else 0,
         seed=int(random.integers(1 << 30)),
         weight_bits=8 if loose and random.integers(2) else None,

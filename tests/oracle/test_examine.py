@@ -119,6 +119,15 @@ def test_a_small_bias_inside_the_bytes_is_a_fail_that_names_the_parameter(plain_
     assert abs(verdict.biases[0].looks_like - 0.2) > verdict.biases[0].legal
 
 
+def test_a_bias_that_the_tightest_finds_is_not_called_the_loosest_s(plain_referee: object) -> None:
+    case, port = box_case(), box_case(ambient=0.2015)
+    color = np.floor(255 * port.frame.color + 0.5).astype(np.uint8)
+    verdict = examine(case, {"color": color}).verdict
+    assert verdict.outcome is Outcome.FAIL
+    assert verdict.biases
+    assert f"judged by {verdict.profile} (the tightest)" in verdict.words()
+
+
 def test_equal_colours_are_rounded_alike_and_no_bias() -> None:
     """A flat colour in bytes is off by the same everywhere: nothing to accuse a port of."""
     case = box_case()

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded
-from ibr_ref.oracle.device import UNIT
+from ibr_ref.oracle.device import GL, UNIT
 
 
 def allows_color(color: Bounded, found: NDArray[np.generic]) -> NDArray[np.bool_]:
@@ -34,7 +34,7 @@ def read_back(color: NDArray[np.float64]) -> NDArray[np.generic]:
     if not np.isfinite(steps).all() or steps.min(initial=0.0) < 0.0 or steps.max(initial=0.0) > 255.0:
         return color
     nearest = np.rint(steps)
-    # k / 255 as a float32, and its product with 255: two roundings.
-    if (np.abs(steps - nearest) > 2.0 * UNIT * np.maximum(nearest, 1.0)).any():
+    # k / 255 is a quotient, of the loosest device, and stored as a float32.
+    if (np.abs(steps - nearest) > (GL.quotient + 1.0) * UNIT * nearest).any():
         return color
     return nearest.astype(np.uint8)

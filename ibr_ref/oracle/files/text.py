@@ -42,7 +42,7 @@ Method: {document.method}. Kind: {document.kind}. Meant for the device profile {
 
 `case.json` has the scene, every parameter and all matrices; `inputs/` the arrays that it names; `expected/` what the
 reference draws. Draw the scene, write your arrays into a folder under the names of `expected/` (any of them, or
-`color.png` alone), and ask `ibr-ref check` for a verdict.
+`color.png` alone), and ask `ibr-ref check` for a verdict. A picture of floats that are all k / 255 counts as bytes.
 
 ## Conventions
 

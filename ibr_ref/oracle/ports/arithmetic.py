@@ -29,6 +29,11 @@ class Policy:
     """Products are not rounded before they are added."""
     reciprocal: bool = False
     """A quotient is the product with the rounded reciprocal; a square root is the reciprocal of an inverse root."""
+    truncated: bool = False
+    """Results are rounded towards zero, as Direct3D grants: each is less than one unit in the last place off."""
+    loose: int = 0
+    """Quotients and square roots move by up to so many units in the last place more than they are rounded, as Vulkan and
+    WGSL grant two; as `jitter` moves them."""
     jitter: int = 0
     """Every result moves by up to so many units in the last place, at random, equal ones alike: a device that is given the
     same numbers twice gives the same result, and a corner that two triangles share is one point."""
@@ -72,11 +77,15 @@ class Arithmetic:
     def round(self, value: ArrayLike) -> Floats:
         """A result of one operation."""
         array = self.number(value)
-        jitters = self.policy.jitter and self.policy.float_bits == 32
-        return self.moved(array, self.policy.jitter) if jitters else array
+        if self.policy.truncated:
+            toward_zero = np.nextafter(array.astype(np.float32), np.float32(0.0)).astype(np.float64)
+            array = np.where(np.abs(array) > np.abs(value), toward_zero, array)
+        return self.moved(array, self.policy.jitter)
 
     def moved(self, array: Floats, most: int) -> Floats:
-        """Each number by up to `most` units in the last place; how far follows from its bits (see `Policy.jitter`)."""
+        """Each float32 by up to `most` units in the last place; how far follows from its bits (see `Policy.jitter`)."""
+        if not most or self.policy.float_bits == 64:
+            return array
         unit = np.spacing(np.abs(array).astype(np.float32)).astype(np.float64)
         steps = (_scattered(array, self.policy.seed) % np.uint64(2 * most + 1)).astype(np.int64) - most
         moves = np.isfinite(array) & (array != 0.0)  # a step from 0 is a denormal number, which devices flush to 0
@@ -99,7 +108,9 @@ class Arithmetic:
         with np.errstate(divide="ignore", invalid="ignore"):
             if self.policy.reciprocal:
                 return self.multiply(a, self.round(np.divide(1.0, b)))
-            return self.round(np.divide(a, b))
+            found = self.round(np.divide(a, b))
+        # By a constant power of two it is exact: shaders multiply by those.
+        return found if np.ndim(b) == 0 and np.frexp(b)[0] == 0.5 else self.moved(found, self.policy.loose)
 
     def root(self, a: ArrayLike) -> Floats:
         """The square root."""
@@ -107,7 +118,7 @@ class Arithmetic:
             if self.policy.reciprocal:
                 inverse = self.round(1.0 / np.sqrt(a))
                 return np.where(np.asarray(a) == 0.0, 0.0, self.round(1.0 / inverse))
-            return self.round(np.sqrt(a))
+            return self.moved(self.round(np.sqrt(a)), self.policy.loose)
 
     def sum(self, terms: Sequence[ArrayLike]) -> Floats:
         """All terms, from the left, or from the right."""

@@ -83,13 +83,13 @@ def planes(examination: Examination) -> Mapping[str, tuple[NDArray[np.generic] |
     return found
 
 
-def blamed(examination: Examination, array: str) -> NDArray[np.bool_]:
-    """(H, W) where the array is the first in which a wrong stage, or the picture, disagrees."""
+def blamed(examination: Examination, array: str) -> NDArray[np.bool_] | None:
+    """(H, W) where the array is the first in which a wrong stage, or the picture, disagrees; None: nowhere."""
     result = np.zeros(examination.case.frame.color.shape[:2], np.bool_)
     for judgement in examination.judgements:
         if judgement.wrong.shape == result.shape and array in judgement.arrays:
             result |= judgement.wrong & (judgement.blame == judgement.arrays.index(array))
-    return result
+    return result if result.any() else None
 
 
 def _bytes(color: NDArray[np.generic]) -> Bytes:

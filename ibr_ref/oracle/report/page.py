@@ -70,8 +70,7 @@ def _inspector(examination: Examination) -> dict[str, Any]:
     image = examination.judgement("image")
     arrays, room = [], MOST_BYTES
     for name, pair in planes(examination).items():
-        wrong = None if pair[1] is None else blamed(examination, name)
-        packed = [None if array is None else _pack(array) for array in (*pair, wrong)]
+        packed = [None if array is None else _pack(array) for array in (*pair, blamed(examination, name))]
         room -= sum(p["bytes"] for p in packed if p is not None)
         if room < 0:
             break

@@ -7,7 +7,7 @@ import pytest
 
 from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, lerp, opposite, power, unit, uploaded
 from ibr_ref.oracle.accept.coverage import covered, snapped
-from ibr_ref.oracle.accept.fetch import Texture, fetch
+from ibr_ref.oracle.accept.fetch import Texture, fetch, highest_around
 from ibr_ref.oracle.accept.winners import winners
 from ibr_ref.oracle.device import GL, IEEE32, PROFILES, VULKAN, Device
 from ibr_ref.oracle.ports.arithmetic import Arithmetic, Policy
@@ -187,3 +187,25 @@ def test_a_unit_vector_whose_sign_is_open_may_exceed_one_by_its_roundings(device
     reference = -vectors / np.sqrt((vectors * vectors).sum(axis=0))
     apart = np.abs(found - reference).max()
     assert 2.0 <= apart <= opposite(device)
+
+
+@pytest.mark.parametrize("repeat", [False, True])
+@pytest.mark.parametrize("device", [IEEE32, GL], ids=lambda d: d.name)
+def test_no_fetch_is_higher_than_what_lies_around(device: Device, repeat: bool) -> None:
+    """Textures from 1 x 1 on, places within the error and beyond the unit square; most bounds tell something."""
+    random, finite = np.random.default_rng(3), []
+    for _ in range(200):
+        height, width = random.integers(1, 17, 2)
+        texture = Texture(random.random((height, width)), repeat)
+        u, v = (Bounded(random.uniform(-0.5, 1.5, 500), 10.0 ** random.uniform(-7, 0, 500), device) for _ in range(2))
+        most = highest_around(texture, u, v)
+        for _ in range(4):
+            x, y = ((c.value + random.uniform(-1, 1, 500) * c.error) * n - 0.5 for c, n in ((u, width), (v, height)))
+            assert (texture.bilinear(x, y) <= most).all()
+        finite.append(np.isfinite(most).mean())
+    assert np.mean(finite) > 0.5
+
+
+def test_where_nothing_is_known_of_a_place_nothing_is_of_the_height() -> None:
+    place = Bounded(np.array([np.nan, np.inf, 0.5]), np.array([0.0, 0.0, np.inf]), IEEE32)
+    assert highest_around(Texture(np.ones((4, 4))), place, place).tolist() == [np.inf] * 3

@@ -12,6 +12,7 @@ from ibr_ref.io import write_image
 from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.files import Submission, load_submission, submission_from_arrays
+from ibr_ref.oracle.ports.arithmetic import Arithmetic, Policy
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 
@@ -38,6 +39,14 @@ def test_floats_that_were_bytes_are_bytes(maps_case: Case, dtype: type) -> None:
     """A framebuffer of bytes that was read back as floats: rounded by its conversion, like a PNG."""
     codes = color_bytes(maps_case.frame.color)
     handed = submission_from_arrays(maps_case, color=(codes / 255.0).astype(dtype)).handed["color"]
+    assert handed.dtype == np.uint8
+    np.testing.assert_array_equal(handed, codes)
+
+
+@pytest.mark.parametrize("policy", [Policy(reciprocal=True), Policy(loose=2), Policy(jitter=2), Policy(truncated=True)])
+def test_whatever_quotient_a_device_makes_of_them(maps_case: Case, policy: Policy) -> None:
+    codes = np.arange(maps_case.frame.color.size).reshape(maps_case.frame.color.shape) % 256
+    handed = submission_from_arrays(maps_case, color=Arithmetic(policy).divide(codes, 255.0)).handed["color"]
     assert handed.dtype == np.uint8
     np.testing.assert_array_equal(handed, codes)
 

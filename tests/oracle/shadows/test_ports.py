@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.faults import Mutant, Variant
 from ibr_ref.oracle.ports.shadows import MUTANTS, VARIANTS, Port
+from ibr_ref.oracle.self_test import port_output
+from ibr_ref.oracle.trials import judge
 from tests.oracle.devices import random_policy
 from tests.oracle.judgements import complaints, first_wrong, in_bytes, picture
-from tests.oracle.shadows.judged import REAL, SMALL, drawn, image, plain, stages
+from tests.oracle.shadows.judged import REAL, SMALL, case, drawn, image, plain, stages
 
 SURVIVORS = 0.05
 """Of the bugs, the most that may get away when stages are handed in; and the most that may be blamed on another stage."""
@@ -97,6 +101,19 @@ def test_random_devices_pass_stage_by_stage() -> None:
         for _ in range(3):
             policy, profile = random_policy(random)
             assert complaints(stages(name, drawn(name, policy), profile)) == [], (name, policy)
+
+
+@pytest.mark.parametrize("device", PROFILES)
+def test_the_nine_maps_are_the_centre_s_whichever_sample_comes_first(device: str) -> None:
+    """Samples that the case lists itself, the centre last."""
+    given = case("shadows-soft")
+    light = given.scene.light
+    corners = [[-2 / 3, -2 / 3], [2 / 3, -2 / 3], [-2 / 3, 2 / 3], [2 / 3, 2 / 3], [0, 0]]
+    listed = light.arrays[0] + np.asarray(corners) @ light.arrays[1]
+    own = replace(given, params=replace(given.params, light_samples=listed))
+    policy, _ = random_policy(np.random.default_rng(5), device)
+    arrays = port_output(own, Port, Variant("listed", policy, device))
+    assert complaints(judge(own, arrays, PROFILES[device])) == []
 
 
 def test_a_looser_device_forgives_more() -> None:

@@ -6,33 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Floats, Policy
+from ibr_ref.oracle.ports.arithmetic import Floats, Policy
 from ibr_ref.oracle.ports.displacement.case import Ints, Patch, Vector
 from ibr_ref.oracle.ports.displacement.march import Rays
 from ibr_ref.oracle.ports.displacement.port import Port
 from ibr_ref.oracle.ports.faults import Variant
-
-# --- Other arithmetic ------------------------------------------------------------------------------------------------
-
-
-class _LooseQuotients(Arithmetic):
-    """Sums and products are exact to half a unit, quotients and roots to two and a half."""
-
-    def divide(self, a: ArrayLike, b: ArrayLike) -> Floats:
-        """A / b; by powers of two it is exact, as shaders multiply by constants."""
-        exact = super().divide(a, b)
-        return exact if np.ndim(b) == 0 and np.frexp(b)[0] == 0.5 else self.moved(exact, 2)
-
-    def root(self, a: ArrayLike) -> Floats:
-        """The square root."""
-        return self.moved(super().root(a), 2)
-
-
-class _LooseQuotientsPort(Port):
-    arithmetic = _LooseQuotients
-
 
 # --- Other orders of operations --------------------------------------------------------------------------------------
 
@@ -162,11 +141,13 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("reflection without a vector", Policy(), "ieee32", _NoReflectedVector),
     Variant("patch space from the host", Policy(), "ieee32", _HostPatchSpace),
     Variant("reciprocal division", Policy(reciprocal=True), "vulkan"),
-    Variant("quotients off by 2 ULP, seed 1", Policy(seed=1), "vulkan", _LooseQuotientsPort),
-    Variant("quotients off by 2 ULP, seed 2", Policy(seed=2, fused=True), "vulkan", _LooseQuotientsPort),
+    Variant("quotients off by 2 ULP, seed 1", Policy(loose=2, seed=1), "vulkan"),
+    Variant("quotients off by 2 ULP, seed 2", Policy(loose=2, seed=2, fused=True), "vulkan"),
     Variant("8-bit weights, truncated", Policy(weight_bits=8, weight_rounding="down"), "vulkan"),
     Variant("subpixel ties up", Policy(subpixel_rounding="up"), "vulkan"),
     Variant("subpixels truncated", Policy(subpixel_rounding="down"), "vulkan"),
+    Variant("truncated", Policy(truncated=True), "d3d11"),
+    Variant("truncated, fused, 8-bit weights", Policy(truncated=True, fused=True, weight_bits=8), "d3d11"),
     Variant("8-bit weights, rounded", Policy(weight_bits=8), "d3d11"),
     Variant("1-ULP jitter, seed 1", Policy(jitter=1, seed=1), "gl"),
     Variant("1-ULP jitter, seed 2", Policy(jitter=1, seed=2, weight_bits=8), "gl"),

@@ -9,33 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Floats
+from ibr_ref.oracle.ports.arithmetic import Floats
 from ibr_ref.oracle.ports.splatting.normals import Bools
 from ibr_ref.oracle.ports.splatting.raster import Fragments, Raster, Splats
 from ibr_ref.oracle.ports.splatting.stage import Vector
 from ibr_ref.oracle.ports.splatting.vertex import Vertex
-
-
-class LooseQuotients(Arithmetic):
-    """The policy's jitter moves quotients and roots only; sums and products are correctly rounded."""
-
-    def add(self, a: ArrayLike, b: ArrayLike) -> Floats:
-        return self.number(np.add(a, b))
-
-    def subtract(self, a: ArrayLike, b: ArrayLike) -> Floats:
-        return self.number(np.subtract(a, b))
-
-    def multiply(self, a: ArrayLike, b: ArrayLike) -> Floats:
-        return self.number(np.multiply(a, b))
-
-
-class Truncating(Arithmetic):
-    """Results are rounded towards zero: each is less than one unit in the last place off."""
-
-    def round(self, value: ArrayLike) -> Floats:
-        exact, nearest = np.asarray(value, np.float64), self.number(value).astype(np.float32)
-        toward_zero = np.nextafter(nearest, np.float32(0.0))
-        return np.where(np.abs(nearest) > np.abs(exact), toward_zero, nearest).astype(np.float64)
 
 
 class ClipFromWorld(Vertex):

@@ -11,28 +11,15 @@ from ibr_ref.oracle.ports.splatting import orders
 from ibr_ref.oracle.ports.splatting.port import Port, with_stage
 
 
-class LooselyDividing(Port):
-    """Quotients within 2.5 units in the last place, as Vulkan and GLSL grant."""
-
-    arithmetic = orders.LooseQuotients
-
-
-class Truncating(Port):
-    """Every operation within one unit in the last place, as Direct3D grants."""
-
-    arithmetic = orders.Truncating
-
-
 class AllAtOnce(Port):
     """Other orders in every stage that has one."""
 
-    arithmetic = orders.LooseQuotients
     vertex = type("AllOrders", (orders.ClipFromWorld, orders.Viewport, orders.HornersLaw, orders.CosinesOnly), {})
     raster = orders.Quads
 
 
 _FLOAT32 = Policy()
-_ALL = Policy(jitter=2, seed=5, backwards=True, subpixel_rounding="down", depth_bits=24, color_bits=8)
+_ALL = Policy(loose=2, seed=5, backwards=True, subpixel_rounding="down", depth_bits=24, color_bits=8)
 
 VARIANTS: tuple[Variant, ...] = (
     Variant("float64", Policy(float_bits=64), "ieee32"),
@@ -47,10 +34,10 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("horners-law", _FLOAT32, "ieee32", with_stage(orders.HornersLaw)),
     Variant("cosines-only", _FLOAT32, "ieee32", with_stage(orders.CosinesOnly)),
     Variant("whole-codes", _FLOAT32, "ieee32", with_stage(orders.WholeCodes)),
-    Variant("truncating", _FLOAT32, "d3d11", Truncating),
+    Variant("truncating", Policy(truncated=True), "d3d11"),
     Variant("reciprocals", Policy(reciprocal=True), "vulkan"),
-    Variant("loose-quotients-1", Policy(jitter=2, seed=1), "vulkan", LooselyDividing),
-    Variant("loose-quotients-2", Policy(jitter=2, seed=2), "vulkan", LooselyDividing),
+    Variant("loose-quotients-1", Policy(loose=2, seed=1), "vulkan"),
+    Variant("loose-quotients-2", Policy(loose=2, seed=2), "vulkan"),
     Variant("subpixels-up", Policy(subpixel_rounding="up"), "vulkan"),
     Variant("subpixels-truncated", Policy(subpixel_rounding="down"), "vulkan"),
     Variant("quads", _FLOAT32, "vulkan", with_stage(orders.Quads)),

@@ -123,14 +123,14 @@ def inside(search: Search, fragment: Ints, index: Ints) -> tuple[Bools, Bools]:
 
 
 def compared(search: Search, fragment: Ints, index: Ints) -> tuple[Bounded, Bools, Bools]:
-    """H - h at samples, and whether they may and must count: outside the domain they are empty (the gap is NaN there)."""
+    """H - h at samples, NaN above all heights and outside the domain, and whether they may and must lie inside the solid."""
     point = search.rays.at(fragment, index, search.lattice)
-    may_count, must_count = domain(search, *point[:2])
+    may_count, _ = domain(search, *point[:2])
     near = np.flatnonzero(may_count & ~(point[2].low > search.constants.textures.height.largest))
     value, error = np.full(len(fragment), np.nan), np.zeros(len(fragment))
     gap = _gap(search, [x[near] for x in point])
     value[near], error[near] = gap.value, gap.error
-    return Bounded(value, error, gap.device), may_count, must_count
+    return Bounded(value, error, gap.device), *inside(search, fragment, index)
 
 
 def _gap(search: Search, point: Vector) -> Bounded:

@@ -50,6 +50,12 @@ class Inputs:
         return places.samples(self.case, self.device)
 
     @cached_property
+    def centre_lens(self) -> Lens:
+        """What the light's centre sees: the nine maps."""
+        light = self.case.scene.light
+        return Lens.of(light.camera(int(self.case.params.map_size)), np.abs(light.arrays[0]))
+
+    @cached_property
     def lenses(self) -> list[Lens]:
         """What each sample sees."""
         size, light = int(self.case.params.map_size), self.case.scene.light

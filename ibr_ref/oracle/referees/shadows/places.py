@@ -45,17 +45,14 @@ def samples(case: Any, device: Device) -> list[Sample]:
         given = np.asarray(params.light_samples, np.float64)
         moves = [[uploaded(n, device) - uploaded(c, device) for n, c in zip(p, centre, strict=True)] for p in given]
         return [Sample(p, np.abs(p), list(on_axes(axes, move))) for p, move in zip(given, moves, strict=True)]
-    nowhere = [exact(0.0, device)] * 2
-    if int(params.light_samples) == 1:
-        return [Sample(centre, np.abs(centre), nowhere)]
-    steps = {5: (-STEP, STEP), 9: (-STEP, 0.0, STEP)}[int(params.light_samples)]
+    steps = {1: (), 5: (-STEP, STEP), 9: (-STEP, 0.0, STEP)}[int(params.light_samples)]
     result = []
     for g, h in [(0.0, 0.0), *((g, h) for h in steps for g in steps if (g, h) != (0.0, 0.0))]:
         # Where operations are correctly rounded the centre plus nothing is the centre.
         still = (g, h) == (0.0, 0.0) and device.operation <= 1.0
-        displacement = nowhere if still else list(on_axes(axes, _moved(g, h, edges, centre, device)))
+        move = [exact(0.0, device)] * 3 if still else _moved(g, h, edges, centre, device)
         sizes = np.abs(centre) + np.abs(g * edges[0]) + np.abs(h * edges[1])
-        result.append(Sample(centre + (g * edges[0] + h * edges[1]), sizes, displacement))
+        result.append(Sample(centre + (g * edges[0] + h * edges[1]), sizes, list(on_axes(axes, move))))
     return result
 
 

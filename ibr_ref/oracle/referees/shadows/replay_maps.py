@@ -44,7 +44,7 @@ def images(given: Inputs) -> Judgement | None:
     for j, i in np.ndindex(3, 3):
         usable = own is not None and np.isfinite(own[j, i]).all()
         at = [exact(own[j, i, k], given.device) for k in range(2)] if own is not None and usable else [x[i], y[j]]
-        results.append(maps.allows(given.case, given.lenses[0], at, found[j, i]))
+        results.append(maps.allows(given.case, given.centre_lens, at, found[j, i]))
     right, undecided, width = (np.stack(part).reshape(found.shape) for part in zip(*results, strict=True))
     replayed = [] if own is None else ["maps.positions"]
     return judgement("maps", "texel", ["maps.image"], [right], width, replayed=replayed, undecided=undecided)

@@ -69,7 +69,7 @@ class Objects:
         )
 
     def normals(self) -> list[Bounded]:
-        """x, y, z (T,): unit normals; without a bound where a triangle may have no area."""
+        """x, y, z (T,): unit normals; any direction where a triangle may have no area."""
         a, b, c = ([p[self.triangles[:, i]] for p in self.points] for i in range(3))
         u, v = ([x - y for x, y in zip(other, a, strict=True)] for other in (b, c))
         cross = [u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1))]

@@ -19,9 +19,9 @@ MATRIX_ROUNDINGS = 13.0
 rounding of its entries; the same again with p or B (a product and three sums); one rounding of the result. B, the bias
 matrix, has two terms a row with entries of 1/2, which cost nothing: a sum more."""
 
-EYE_ROUNDINGS = 6.0
-"""Besides, of the terms of -axis . eye that a port computes itself: the eye's two products and sum (g e0 + h e1, and that
-added to the centre), and a product with two sums."""
+EYE_ROUNDINGS = 10.0
+"""Besides, of the terms of -axis . eye that a port computes itself. Of the eye: uploads of two factors, a product and two
+sums, centre + (g e0 + h e1), and two more where it is centre + (eye - centre); then a product with the axis and two sums."""
 
 
 def gamma(device: Device, operations: float, quotients: float = 0.0) -> float:
@@ -38,15 +38,18 @@ class Lens:
     clip: Floats
     sizes: Floats
     """(4, 4) |P| |V|: what roundings are relative to, whatever cancels."""
+    column_roundings: float = MATRIX_ROUNDINGS
+    """Of the terms with V's last column; of the others MATRIX_ROUNDINGS."""
 
     @classmethod
     def of(cls, camera: Any, eye: ArrayLike | None = None) -> Lens:
         """A camera's. eye (3,), the sizes of its terms: with it the port has computed the last column, -axis . eye."""
         view, clip = np.asarray(camera.view_from_world, np.float64), np.asarray(camera.clip_from_view, np.float64)
         absolute = np.abs(view)
-        if eye is not None:
-            absolute[:3, 3] = absolute[:3, :3] @ np.asarray(eye, np.float64) * (1.0 + EYE_ROUNDINGS / MATRIX_ROUNDINGS)
-        return cls(view, clip, np.abs(clip) @ absolute)
+        if eye is None:
+            return cls(view, clip, np.abs(clip) @ absolute)
+        absolute[:3, 3] = absolute[:3, :3] @ np.asarray(eye, np.float64)
+        return cls(view, clip, np.abs(clip) @ absolute, MATRIX_ROUNDINGS + EYE_ROUNDINGS)
 
     def clip_of(self, point: Sequence[Bounded]) -> list[Bounded]:
         """Clip coordinates x, y, z, w of points, the matrices applied one after the other or multiplied before.
@@ -63,7 +66,7 @@ class Lens:
         result = []
         for row, moves, sizes in zip(self.clip, product, sizes_of_rows, strict=True):
             value = row[0] * view[0] + row[1] * view[1] + row[2] * view[2] + row[3]
-            error = rounding * sizes[3]
+            error = gamma(device, self.column_roundings) * sizes[3]
             for k, p in enumerate(point):
                 error = error + (moves[k] * p.error + rounding * sizes[k] * p.size)
             result.append(Bounded(value, np.broadcast_to(error, value.shape), device))

@@ -49,6 +49,7 @@ def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRo
     depth = case.params.content == "depth"
     (row, column), at, lens = index[-2:], places.offset(case, device), given.lenses[0]
     if array == "maps.image":
+        lens = given.centre_lens
         own = given.own("maps.positions", sampled=False)
         line = [p[n] for p, n in zip(places.positions(case, device), index[1::-1], strict=True)]
         at = line if own is None else [exact(n, device) for n in own[index[:2]]]
