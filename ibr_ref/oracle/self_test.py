@@ -8,6 +8,7 @@ from importlib import import_module
 
 import numpy as np
 
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.device import PROFILES
@@ -61,7 +62,7 @@ def port_output(case: Case, port: type[PlainPort], variant: Variant | None = Non
     policy = Policy() if variant is None else variant.policy
     arrays = port(case.scene, case.params, policy, case.inputs).render()
     if policy.color_bits == 8:
-        arrays["color"] = np.rint(255.0 * np.asarray(arrays["color"], np.float64)).astype(np.uint8)
+        arrays["color"] = color_bytes(np.asarray(arrays["color"], np.float64))
     return arrays
 
 

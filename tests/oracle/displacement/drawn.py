@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.cases.displacement import CASES
 from ibr_ref.oracle.device import PROFILES
@@ -32,16 +33,12 @@ def reference(name: str) -> Arrays:
     return {**frame.stages, "color": frame.color, "depth": frame.depth}
 
 
-def as_bytes(color: np.ndarray) -> np.ndarray:
-    return np.floor(255.0 * np.clip(color, 0.0, 1.0) + 0.5).astype(np.uint8)
-
-
 def draw(name: str, policy: Policy, port: type[Any] | None = None) -> Arrays:
     """All arrays of a plain port; a picture of eight bits as bytes."""
     what = case(name)
     arrays = (port or Port)(what.scene, what.params, policy, what.inputs).render()
     if policy.color_bits == 8:
-        arrays["color"] = as_bytes(arrays["color"])
+        arrays["color"] = color_bytes(arrays["color"])
     return arrays
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases.displacement import CASES
 from ibr_ref.oracle.device import PROFILES
-from tests.oracle.displacement.drawn import REFEREE, SMALL, as_bytes, case, image, reference, wrong
+from tests.oracle.displacement.drawn import REFEREE, SMALL, case, image, reference, wrong
 
 MOST_UNDECIDED = 0.005
 """Of a case's pixels under its own profile (oracle.md, "How a pixel is judged")."""
@@ -36,7 +37,7 @@ def test_hardly_a_pixel_is_undecided_and_the_reference_passes(name: str) -> None
 def test_the_reference_passes_every_profile(name: str, profile: str) -> None:
     arrays, device = reference(name), PROFILES[profile]
     assert not wrong(REFEREE.judge_stages(case(name), device, arrays))
-    assert not wrong([REFEREE.judge_image(case(name), device, {"color": as_bytes(arrays["color"])})])
+    assert not wrong([REFEREE.judge_image(case(name), device, {"color": color_bytes(arrays["color"])})])
 
 
 @pytest.mark.parametrize("name", SMALL)

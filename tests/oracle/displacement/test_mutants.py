@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 
+from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.displacement.mutants import MUTANTS
 from ibr_ref.oracle.ports.faults import Mutant
-from tests.oracle.displacement.drawn import REFEREE, SMALL, as_bytes, case, draw, wrong
+from tests.oracle.displacement.drawn import REFEREE, SMALL, case, draw, wrong
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ def fate(mutant: Mutant) -> Fate:
         device, arrays = PROFILES[case(name).profile], draw(name, Policy(), mutant.port)
         if not stages and (found := wrong(REFEREE.judge_stages(case(name), device, arrays))):
             stages, stage = name, found[0][0]
-        if not picture and wrong([REFEREE.judge_image(case(name), device, {"color": as_bytes(arrays["color"])})]):
+        if not picture and wrong([REFEREE.judge_image(case(name), device, {"color": color_bytes(arrays["color"])})]):
             picture = name
         if stages and (picture or mutant.hidden):
             break

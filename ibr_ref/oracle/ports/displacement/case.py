@@ -54,8 +54,6 @@ def spread(values: NDArray[Scalar], where: Ints, count: int, nothing: float) -> 
 class Case:
     """The uniforms and textures of a scene, and operations on vectors."""
 
-    arithmetic: type[Arithmetic] = Arithmetic
-
     def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
         """A displacement scene and its parameters; `inputs` is not used: the scene holds everything.
 
@@ -65,7 +63,7 @@ class Case:
             raise reject("method", params.method, "protruded")
         self.scene = scene
         self.params = params
-        self.do = self.arithmetic(policy)
+        self.do = Arithmetic(policy)
         self.width: int = scene.camera.width
         self.height: int = scene.camera.height
         self.view_from_world = self.do.number(scene.camera.view_from_world)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.ports.arithmetic import Floats, Policy
+from ibr_ref.oracle.ports.arithmetic import Arithmetic, Floats, Policy
 from ibr_ref.oracle.ports.displacement.case import Ints, Patch, Vector
 from ibr_ref.oracle.ports.displacement.march import Rays
 from ibr_ref.oracle.ports.displacement.port import Port
@@ -106,7 +106,7 @@ class _HostPatchSpace(Port):
     """Patch spaces, with eye and light in them, are computed on the host in float64 and uploaded."""
 
     def patch(self, number: int, polygon: Any) -> Patch:
-        device, self.do = self.do, self.arithmetic(Policy(float_bits=64))
+        device, self.do = self.do, Arithmetic(Policy(float_bits=64))
         eye, light = self.eye, self.light
         self.eye, self.light = list(self.scene.camera.eye), list(self.scene.light.homogeneous)
         exact = super().patch(number, polygon)

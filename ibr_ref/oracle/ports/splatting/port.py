@@ -18,7 +18,6 @@ from ibr_ref.oracle.ports.splatting.vertex import Vertex
 class Port:
     """Other ports put a class of their own in the place of one of the five."""
 
-    arithmetic: ClassVar[type[Arithmetic]] = Arithmetic
     normals: ClassVar[type[Normals]] = Normals
     atlas: ClassVar[type[Atlas]] = Atlas
     vertex: ClassVar[type[Vertex]] = Vertex
@@ -35,7 +34,7 @@ class Port:
     def render(self) -> dict[str, Any]:
         """All arrays of the contract but for `raster.margin`; those of the atlas are tuples, one array a page."""
         with np.errstate(all="ignore"):  # a device knows no traps
-            return self._arrays(self.arithmetic(self.policy), self.scene, self.params)
+            return self._arrays(Arithmetic(self.policy), self.scene, self.params)
 
     def _arrays(self, *context: Any) -> dict[str, Any]:
         codes = [self.normals(*context).codes(image) for image in self.scene.images]

@@ -32,7 +32,7 @@ BYTE = 1.0 / 255.0
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """What a scene alone says of the stages up to the depth test, each computed when it is asked for."""
+    """What a scene alone says of the stages and of the picture, each computed when it is asked for."""
 
     scene: Scene
     params: Params
@@ -83,6 +83,25 @@ class Candidates:
         """(pixels,) whether a pixel may show nothing."""
         return self._winners.empty
 
+    @cached_property
+    def accepted(self) -> Accepted:
+        """All pictures of pixels."""
+        hits = self.hits.take(self.possible & self.hits.kept)
+        shades = shades_of(self.constants, self.params, hits)
+        index, color = lighted(self.constants, hits, shades)
+        at = shades.hit[index]
+        empty = np.flatnonzero(self.empty)
+        behind = np.broadcast_to(np.asarray(self.scene.background, np.float64), (len(empty), 3))
+        nothing = np.full(len(empty), -1)
+        return Accepted(
+            pixel=np.concatenate([hits.pixel[at], empty]),
+            polygon=np.concatenate([hits.polygon[at], nothing]),
+            hit_index=np.concatenate([hits.hit_index[at], nothing]),
+            color=joined([color, uploaded(behind, self.device)]),
+            depth=joined([hits.depth[at], exact(np.ones(len(empty)), self.device)]).widened(self.device.depth_step),
+            lost=self.lost,
+        )
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Accepted:
@@ -99,50 +118,20 @@ class Accepted:
     """Pixels where anything is accepted."""
 
 
-_CANDIDATES: WeakKeyDictionary[Case, dict[str, Candidates]] = WeakKeyDictionary()
-_ACCEPTED: WeakKeyDictionary[Case, dict[str, Accepted]] = WeakKeyDictionary()
+_CANDIDATES: WeakKeyDictionary[Case, Candidates] = WeakKeyDictionary()
 
 
 def candidates_of(case: Case, device: Device) -> Candidates:
     """Computed once for a case and its last device, for as long as the case lives."""
-    known = _CANDIDATES.setdefault(case, {})
-    if device.name not in known:
-        known.clear()
-        known[device.name] = Candidates(case.scene, case.params, device)
-    return known[device.name]
-
-
-def accepted_of(case: Case, device: Device) -> Accepted:
-    """Computed once for a case and its last device, for as long as the case lives."""
-    known = _ACCEPTED.setdefault(case, {})
-    if device.name not in known:
-        known.clear()
-        known[device.name] = _accepted(case, device)
-    return known[device.name]
-
-
-def _accepted(case: Case, device: Device) -> Accepted:
-    found = candidates_of(case, device)
-    hits = found.hits.take(found.possible & found.hits.kept)
-    shades = shades_of(found.constants, case.params, hits)
-    index, color = lighted(found.constants, hits, shades)
-    at = shades.hit[index]
-    empty = np.flatnonzero(found.empty)
-    background = uploaded(np.broadcast_to(np.asarray(case.scene.background, np.float64), (len(empty), 3)), device)
-    nothing = np.full(len(empty), -1)
-    return Accepted(
-        pixel=np.concatenate([hits.pixel[at], empty]),
-        polygon=np.concatenate([hits.polygon[at], nothing]),
-        hit_index=np.concatenate([hits.hit_index[at], nothing]),
-        color=joined([color, background]),
-        depth=joined([hits.depth[at], exact(np.ones(len(empty)), device)]).widened(device.depth_step),
-        lost=found.lost,
-    )
+    known = _CANDIDATES.get(case)
+    if known is None or known.device != device:
+        known = _CANDIDATES[case] = Candidates(case.scene, case.params, device)
+    return known
 
 
 def judge_image(case: Case, device: Device, handed: Handed) -> Judgement:
     """Colour, and depth where it is handed in: one legal outcome must agree with both."""
-    accepted = accepted_of(case, device)
+    accepted = candidates_of(case, device).accepted
     height, width = case.scene.camera.height, case.scene.camera.width
     pixels = height * width
     color = np.asarray(handed["color"]).reshape(pixels, 3)

@@ -110,15 +110,12 @@ def outcomes_of(search: Search) -> tuple[Outcomes, Ints]:
 def inside(search: Search, fragment: Ints, index: Ints) -> tuple[Bools, Bools]:
     """Whether the sample at a lattice index may lie inside the solid, and whether it must."""
     point = search.rays.at(fragment, index, search.lattice)
-    may, must = domain(search, *point[:2])
+    may_count, must_count = domain(search, *point[:2])
     # Most samples lie above all texels around them: they need no fetch.
-    near = np.flatnonzero(may & ~(point[2].low > highest_around(search.constants.textures.height, *point[:2])))
+    near = np.flatnonzero(may_count & ~(point[2].low > highest_around(search.constants.textures.height, *point[:2])))
     gap = _gap(search, [x[near] for x in point])
-    above = np.ones(len(fragment), np.bool_)
-    above[near] = False
-    may, must = may & ~above, must & ~above
-    may[near] &= gap.high > 0.0
-    must[near] &= gap.low > 0.0
+    may, must = np.zeros(len(fragment), np.bool_), np.zeros(len(fragment), np.bool_)
+    may[near], must[near] = gap.high > 0.0, must_count[near] & (gap.low > 0.0)
     return may, must
 
 

@@ -175,11 +175,8 @@ def _comparison(search: Search, step: str, index: int, said: bool | None) -> Tra
         outside = f"{place}: outside the map, empty: no" if not inside[0] else f"{place}: above all heights: no"
         return TraceRow(step=step, reference=outside, port=answer, note="differs" if said else "certain")
     true = bool(gap.value[0] > 0.0)
-    note = (
-        "either way is legal"
-        if may[0] and not must[0]
-        else ("differs" if said is not None and said != true else "certain")
-    )
+    differs = said is not None and said != true
+    note = "either way is legal" if may[0] and not must[0] else "differs" if differs else "certain"
     return TraceRow(
         step=step,
         reference=f"{place}: {_number(h.value[0])} < {_number(h.value[0] + gap.value[0])}: {'yes' if true else 'no'}",
