@@ -12,8 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.optimize import linprog
 
 from ibr_ref.pipeline.transform import transformed
 from ibr_ref.splatting.buffers import Reference, View
@@ -49,6 +47,9 @@ def fit(distances: Floats, needed: Floats, tau: float, least: float, most: float
 
     needed is clamped to [least, most] first; the law stays at or below `most` at all distances given.
     """
+    from scipy import sparse  # with scipy.optimize a quarter of a second, which whoever only draws need not wait for
+    from scipy.optimize import linprog
+
     inverse = 1.0 / np.clip(needed, least, most)
     farthest = float(distances.max())
     x = distances / farthest

@@ -142,7 +142,8 @@ def see(case: Any, device: Device) -> Seen:
     cut = clipped([*clip, *objects.points, *painted], objects.triangles, objects.names, width, height)
     found = fragments(cut.x, cut.y, width, height)
     triangles, owned = Triangles.of(cut.x, cut.y, width, height), owners(found, cut.names, width)
-    depth = linear(triangles, found, cut.z).widened(device.depth_step)
+    (depth,) = linear(triangles, found, [cut.z])
+    depth = depth.widened(device.depth_step)
     pixel = found.rows * width + found.columns
     won = winners(pixel, owned.drawn, depth.low, depth.high, width * height, owner=owned.owner)
     shown = _only(found, won.possible)

@@ -153,11 +153,14 @@ def _evaluation(triangles: Triangles, a: Floats, device: Device, area: Floats) -
 
 # What is unknown of triangles without an area comes out as NaN or infinity, and is told as an infinite error.
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
-def linear(triangles: Triangles, found: Fragments, corner: Bounded) -> Bounded:
-    """(n,) a varying that is linear in the window, from its values (T, 3)."""
-    plane, mixer, t = Plane.of(triangles, corner), Mixer.of(triangles, found), found.triangle
-    moved = mixer.moved(plane.gradient[0][t], plane.gradient[1][t])
-    return _between_corners(triangles, found, corner, Bounded(plane.at(found), moved + plane.own(mixer), corner.device))
+def linear(triangles: Triangles, found: Fragments, corners: Sequence[Bounded]) -> list[Bounded]:
+    """(n,) each of the varyings that are linear in the window, by their values (T, 3)."""
+    mixer, t, result = Mixer.of(triangles, found), found.triangle, []
+    for corner in corners:
+        plane = Plane.of(triangles, corner)
+        error = mixer.moved(plane.gradient[0][t], plane.gradient[1][t]) + plane.own(mixer)
+        result.append(_between_corners(triangles, found, corner, Bounded(plane.at(found), error, corner.device)))
+    return result
 
 
 def _between_corners(triangles: Triangles, found: Fragments, corner: Bounded, value: Bounded) -> Bounded:

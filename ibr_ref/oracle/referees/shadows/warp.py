@@ -82,10 +82,10 @@ class Mesh:
     last: NDArray[np.int64]
     """(S S) the fragment that the reference shows."""
 
-    def coordinates(self, grid: Bounded) -> tuple[Bounded, Bounded]:
+    def coordinates(self, grid: Bounded) -> list[Bounded]:
         """(n,) u and v of the fragments."""
         corners = grid_corners(grid)
-        return linear(self.triangles, self.found, corners[..., 0]), linear(self.triangles, self.found, corners[..., 1])
+        return linear(self.triangles, self.found, [corners[..., 0], corners[..., 1]])
 
     def warped(self, source: Source) -> Bounded:
         """An image with its grid as texture coordinates."""
