@@ -35,6 +35,10 @@ def contents(path: str | PathLike[str]) -> bytes:
     raise ValueError(f"{path}: found {status.st_size} bytes, allowed: 1 to 2^32")
 
 
+_LONGEST_MESSAGE = 400
+"""Characters behind the path: decoders quote what they read."""
+
+
 @contextmanager
 def naming(path: str | PathLike[str]) -> Iterator[None]:
     """Around a decoder: whatever it raises comes out as a ValueError of one line that starts with the path.
@@ -46,9 +50,14 @@ def naming(path: str | PathLike[str]) -> Iterator[None]:
     except MemoryError:
         raise OSError(f"{path}: does not fit in memory") from None
     except (OSError, SyntaxError, ValueError) as error:
-        raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
+        raise ValueError(f"{path}: {_one_line(error)}") from None
     except Exception as error:  # bad data break the decoders of others in any way
-        raise ValueError(f"{path}: is damaged ({type(error).__name__} {' '.join(str(error).split())})") from None
+        raise ValueError(f"{path}: is damaged ({type(error).__name__} {_one_line(error)})") from None
+
+
+def _one_line(error: Exception) -> str:
+    text = " ".join(str(error).split())
+    return text if len(text) <= _LONGEST_MESSAGE else text[: _LONGEST_MESSAGE - 3] + "..."
 
 
 @contextmanager

@@ -35,6 +35,7 @@ def shadow_stage(
 ) -> Scene:
     """A scene for `ibr_ref.shadows`: the caster, z up, scaled to a largest extent of 1, over a floor with two steps.
 
+    Vertices of no triangle are left out.
     offset: (x, y), each from -0.6 to 0.6: the object moves along the world's x and y. light_size: half the side of the
     square light, world units, >= 0. eye, target: the camera's, world space; width, height: its picture, pixels.
     Raises ValueError for a mesh that is none or has no extent, and what makes no scene.
@@ -44,7 +45,7 @@ def shadow_stage(
     half = checks.number("light_size", light_size, low=0.0)
     return Scene(
         receivers=_receivers(),
-        caster=_scaled(caster),
+        caster=_scaled(caster.compact()),
         offset_axes=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
         offset_range=((-REACH, REACH), (-REACH, REACH)),
         offset=offset,
@@ -67,8 +68,7 @@ def shadow_stage(
 
 def _scaled(mesh: Mesh) -> Mesh:
     """Its largest extent 1, the middle of its bounding box above the origin, its lowest point just above the floor."""
-    vertices = np.asarray(mesh.vertices)
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    vertices, (low, high) = np.asarray(mesh.vertices), mesh.bounds
     extent = float((high - low).max())
     if not 0.0 < extent < math.inf:
         raise checks.reject("caster.vertices", f"a box from {low.tolist()} to {high.tolist()}", "an extent > 0")

@@ -140,8 +140,9 @@ def frame_of(scene: Scene, towards: Array) -> parallel.Frame:
 
 def _parallel(scene: Scene, surface: Surface, caster: Array) -> tuple[parallel.Frame, parallel.Window, Array]:
     """The light's frame, a window around the caster, and the distances of all that is seen of the receivers."""
-    frame = frame_of(scene, caster.mean(axis=0))
-    nearest = parallel.distances(frame, caster).min()
+    drawn = caster[np.unique(scene.caster.triangles)]
+    frame = frame_of(scene, drawn.mean(axis=0))
+    nearest = parallel.distances(frame, drawn).min()
     if not nearest > 0.0:
         raise checks.reject(
             "light.position",
@@ -151,4 +152,4 @@ def _parallel(scene: Scene, surface: Surface, caster: Array) -> tuple[parallel.F
     seen = (surface.triangle >= 0) & (surface.triangle < caster_from(scene))
     receivers = parallel.distances(frame, surface.varyings[seen][:, :3])
     farthest = float(receivers.max()) if len(receivers) else 0.0
-    return frame, parallel.window_around(frame, caster, max(farthest, float(nearest))), receivers
+    return frame, parallel.window_around(frame, drawn, max(farthest, float(nearest))), receivers
