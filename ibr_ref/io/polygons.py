@@ -13,7 +13,11 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _FLAT = 1e-12
-"""Area, in squares of a polygon's extent, that is rounding."""
+"""Distance from a line, in extents of a polygon, that is rounding."""
+_ROUNDED = 1e-13
+"""Of a sum, as a share of what was summed."""
+_ROUNDS = 8
+"""Spikes on spikes on spikes."""
 _NO_NORMAL = 1e-9
 """Length of a polygon's normal, as a share of those of its triangles, that is rounding."""
 _MOST_TO_CUT = 2**16
@@ -98,9 +102,10 @@ def _is_fan(flat: Floats) -> NDArray[np.bool_]:
     Its triangles are then all wound alike, and the angles at the first corner no more than a whole turn in all.
     """
     before, after = flat[:, 1:-1], flat[:, 2:]
-    areas = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
-    angles = np.arctan2(np.maximum(areas, 0.0), (before * after).sum(axis=2))
-    result: NDArray[np.bool_] = (areas >= -_FLAT).all(axis=1) & (angles.sum(axis=1) < 2.0 * np.pi + 1e-9)
+    angles = np.arctan2(np.maximum(_crossed(before, after), 0.0), (before * after).sum(axis=2))
+    result: NDArray[np.bool_] = (_heights(before, after) >= -_FLAT).all(axis=1) & (
+        angles.sum(axis=1) < 2.0 * np.pi + 1e-9
+    )
     return result
 
 
@@ -116,22 +121,34 @@ def _cut(flat: Floats, name: str) -> Integers:
         raise ValueError(f"found {count} corners in {name}, which is no fan, allowed: up to {_MOST_TO_CUT}")
     ends = np.array([count], np.uint32)
     cut = mapbox_earcut.triangulate_float64(np.ascontiguousarray(flat), ends).reshape(-1, 3).astype(np.int64)
-    areas = _areas(flat, cut)
-    if areas.sum() < 0.0:
-        areas, cut = -areas, cut[:, ::-1]
-    whole = (flat[:-1, 0] * flat[1:, 1] - flat[:-1, 1] * flat[1:, 0]).sum()  # the first corner is 0
-    if len(cut) and (areas >= -_FLAT).all() and abs(areas.sum() - whole) <= _FLAT * count:
+    if _crossed(*_edges(flat, cut)).sum() < 0.0:
+        cut = cut[:, ::-1]
+    areas, terms = _crossed(*_edges(flat, cut)), flat[:-1] * flat[1:, ::-1]  # the first corner is 0
+    wanted, rounding = (terms[:, 0] - terms[:, 1]).sum(), _ROUNDED * (np.abs(terms).sum() + np.abs(areas).sum())
+    if len(cut) and (_heights(*_edges(flat, cut)) >= -_FLAT).all() and abs(areas.sum() - wanted) <= rounding:
         cut = _with_all_corners(flat, cut)
         if len(cut) == count - 2:
             return cut
     raise ValueError(f"found {name}, of {count} corners, which crosses itself, allowed: polygons that do not")
 
 
-def _areas(flat: Floats, triangles: Integers) -> Floats:
-    """(t,) twice the areas of triangles (t, 3) of points (n, 2), signed."""
+def _edges(flat: Floats, triangles: Integers) -> tuple[Floats, Floats]:
+    """(t, 2) twice: the edges of triangles (t, 3) of points (n, 2) from their first corners."""
     a, b, c = np.moveaxis(flat[triangles], 1, 0)
-    areas: Floats = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    return b - a, c - a
+
+
+def _crossed(first: Floats, second: Floats) -> Floats:
+    """Twice the signed areas between edges (..., 2)."""
+    areas: Floats = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
     return areas
+
+
+def _heights(first: Floats, second: Floats) -> Floats:
+    """About the signed heights of triangles with edges (..., 2) of one corner: 0 for those without an extent."""
+    lengths = np.abs(first).sum(axis=-1) + np.abs(second).sum(axis=-1)
+    heights: Floats = _crossed(first, second) / np.where(lengths > 0.0, lengths, 1.0)
+    return heights
 
 
 def _with_all_corners(flat: Floats, cut: Integers) -> Integers:
@@ -152,15 +169,20 @@ def _with_all_corners(flat: Floats, cut: Integers) -> Integers:
     for index, triangle in enumerate(cut.tolist()):
         put(index, triangle)
     kept = np.unique(cut).tolist()
-    for corner in sorted(set(range(len(flat))) - set(kept)):
-        place = bisect(kept, corner)
-        start, end = kept[place - 1], kept[place % len(kept)]
-        index, third = on_edge.get((start, end), (0, start))
-        halves = [[start, corner, third], [corner, end, third]]
-        if third == start or (_areas(flat, np.array(halves)) < -_FLAT).any():
-            index, halves = len(triangles), [[start, corner, end]]
-        kept.insert(place, corner)
-        put(index, halves[0])
-        for half in halves[1:]:
-            put(len(triangles), half)
+    waiting = sorted(set(range(len(flat))) - set(kept))
+    for _ in range(_ROUNDS):
+        missing, waiting = waiting, []
+        for corner in missing:
+            place = bisect(kept, corner)
+            start, end = kept[place - 1], kept[place % len(kept)]
+            index, third = on_edge.get((start, end), (0, start))
+            halves = [[start, corner, third], [corner, end, third]]
+            if third == start or (_heights(*_edges(flat, np.array(halves))) < -_FLAT).any():
+                index, halves = len(triangles), [[start, corner, end]]
+                if abs(_heights(*_edges(flat, np.array(halves)))[0]) > _FLAT:
+                    waiting.append(corner)  # the foot of its spike comes first
+                    continue
+            kept.insert(place, corner)
+            for offset, half in enumerate(halves):
+                put(len(triangles) if offset else index, half)
     return np.array(list(triangles.values()), np.int64)

@@ -36,11 +36,13 @@ LARGEST = 20_000
 _NUMBER = re.compile(rb"-?\d+(\.\d+)?")
 _NUMBERS = [b"0", b"-1", b"1", b"2", b"3", b"255", b"256", b"65535", b"65536", b"2147483647", b"4294967296", b"1e30", b"nan",
             b"99999999999999999999", b"1_0", b"0.5", b"-0", b"1e999", b"", b"x"]  # fmt: skip
-_WORDS = [b"f 1 2 3", b"f -1 -2 -3 -4", b"v 0 0", b"v 1 2 3", b"l 1 2", b"#", b"\\", b"endsolid", b"endloop", b"vertex 1 2 3",
-          b"property float x", b"element face 3", b"end_header", b"3 0 1 2", b"4 0 1 2 3", b"\xef\xbb\xbf", b"\x00",
-          b"format ascii 1.0", b"facet normal 0 0 1", b"comment"]  # fmt: skip
-_VALUES = [0, 1, 2, 3, 4, 5, 6, 12, 255, 65535, 2**31, 2**53, -1, 0.5, 1e300, 1e39, True, None, "", "2.0", [], {}, [0], 5120, 5121,
-           5123, 5125, 5126, "SCALAR", "VEC3", "VEC4"]  # fmt: skip
+_WORDS = [
+    b"f 1 2 3", b"f -1 -2 -3 -4", b"v 0 0", b"v 1 2 3", b"l 1 2", b"#", b"\\", b"endsolid", b"endloop", b"vertex 1 2 3",
+    b"facet normal 0 0 1", b"property float x", b"element face 3", b"end_header", b"format ascii 1.0", b"comment",
+    b"3 0 1 2", b"4 0 1 2 3", b"\xef\xbb\xbf", b"\x00",
+]  # fmt: skip
+_VALUES = [0, 1, 2, 3, 4, 5, 6, 12, 255, 65535, 2**31, 2**53, -1, 0.5, 1e300, 1e39, True, None, "", "2.0", [], {}, [0],
+           5120, 5121, 5123, 5125, 5126, "SCALAR", "VEC3", "VEC4"]  # fmt: skip
 
 
 def changed(item: corpus.Item, chance: random.Random) -> bytes:

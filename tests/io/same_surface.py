@@ -49,9 +49,17 @@ def _uncovered(polygon: np.ndarray, cut: np.ndarray) -> str:
     middle = points.mean(axis=0)
     normal = sum(np.cross(a - middle, b - middle) for a, b in zip(points, np.roll(points, -1, axis=0), strict=True))
     extent = np.abs(points - middle).max()
-    shown = [axis for axis in range(3) if axis != int(np.argmax(np.abs(normal)))]
-    flat, pieces = (points - middle)[:, shown] / extent, (cut - middle)[:, :, shown] / extent
-    random = np.random.default_rng(len(polygon))
+    problem = ""
+    for axis in np.flatnonzero(np.abs(normal) >= (1.0 - 1e-9) * np.abs(normal).max()):
+        shown = [other for other in range(3) if other != axis]
+        problem = _covered_otherwise((points - middle)[:, shown] / extent, (cut - middle)[:, :, shown] / extent)
+        if not problem:
+            break
+    return problem
+
+
+def _covered_otherwise(flat: np.ndarray, pieces: np.ndarray) -> str:
+    random = np.random.default_rng(len(flat))
     mixed = random.dirichlet([1.0] * 3, (len(pieces), 4))
     samples = np.concatenate([np.einsum("tsk,tkd->tsd", mixed, pieces).reshape(-1, 2), random.uniform(-1, 1, (40, 2))])
     samples = samples[_clearance(samples, flat, pieces) > 1e-7]

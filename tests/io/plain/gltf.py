@@ -62,9 +62,10 @@ class _File:
     def accessor(self, index: int) -> list[Any]:
         accessor = self.part("accessors", index)
         letter, width, count = _LETTER[accessor["componentType"]], _WIDTH[accessor["type"]], accessor["count"]
-        need(0 < count and ("bufferView" in accessor or count <= 2**20), "count")
-        rows: list[Any] = [(0,) * width] * count
-        if "bufferView" in accessor:
+        need(count > 0 and ("bufferView" in accessor or count <= 2**20), "count")
+        if "bufferView" not in accessor:
+            rows: list[Any] = [(0,) * width] * count
+        else:
             rows = self.elements(accessor["bufferView"], accessor.get("byteOffset", 0), count, letter, width, True)
         if "sparse" in accessor:
             sparse = accessor["sparse"]
