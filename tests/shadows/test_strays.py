@@ -17,7 +17,10 @@ STRAYS = np.array([(100.0, 100.0, 100.0), (-3.0, 0.0, 50.0), (0.0, 0.0, -1e6)])
 def with_strays(mesh: Mesh, strays: np.ndarray = STRAYS) -> Mesh:
     """The first of all vertices and the last ones are strays."""
     vertices = np.concatenate([strays[:1], np.asarray(mesh.vertices), strays])
-    return Mesh(vertices=vertices, triangles=np.asarray(mesh.triangles) + 1, color=mesh.color)
+    color = np.asarray(mesh.color)
+    if color.ndim == 2:
+        color = np.concatenate([color[:1] * 0.5, color, np.zeros_like(strays)])
+    return Mesh(vertices=vertices, triangles=np.asarray(mesh.triangles) + 1, color=color)
 
 
 @pytest.mark.parametrize("strays", [STRAYS, [(1e308, -1e308, 1e308)], [(0.0, 0.0, 0.0)]], ids=["far", "huge", "inside"])
