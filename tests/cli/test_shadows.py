@@ -9,8 +9,8 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
+from ibr_ref.bench import shadows as bench
 from ibr_ref.cli import shadow_quality
-from ibr_ref.cli.bench import shadows as bench
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
 

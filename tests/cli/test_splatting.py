@@ -149,7 +149,7 @@ def test_psnr_by_hand() -> None:
 
 
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ibr_ref.cli.bench import splatting
+    from ibr_ref.bench import splatting
 
     scenes = list(splatting.scenes(None))
     assert [name for name, *_ in scenes] == list(splatting.PAPER_MPPS)
@@ -165,7 +165,7 @@ def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyP
 @real_data
 def test_bench_prints_the_quality_of_the_views(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The figures that the README gives, as the issue of this method asks for them."""
-    from ibr_ref.cli.bench import splatting
+    from ibr_ref.bench import splatting
 
     monkeypatch.setattr(splatting, "scenes", lambda msr: iter(()))
     path = tmp_path / "times.json"
