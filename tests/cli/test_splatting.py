@@ -9,8 +9,8 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from ibr_ref import io, models
-from ibr_ref.cli import options, view_quality
+from ibr_ref import io, metrics, models
+from ibr_ref.cli import options
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
 
@@ -144,8 +144,8 @@ def test_psnr_by_hand() -> None:
     off = truth + 0.1
     off[0, 0] = 1.0
     where = np.array([[False, True], [True, True]])
-    assert view_quality.psnr(off, truth, where) == pytest.approx(20.0)
-    assert view_quality.psnr(truth, truth, where) == np.inf
+    assert metrics.psnr(off, truth, where) == pytest.approx(20.0)
+    assert metrics.psnr(truth, truth, where) == np.inf
 
 
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
