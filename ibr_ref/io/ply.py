@@ -1,7 +1,7 @@
 """PLY, text and binary of both byte orders: vertices, polygons or triangle strips, vertex colours.
 
-Not left to a library: trimesh refuses polygons of several sizes and fans concave ones, meshio (no longer kept) takes other
-colours than 8 bits for none, plyfile reads each number in Python and asks its users for its own licence.
+Not left to trimesh, which refuses binary files with polygons of several sizes and makes fans of concave ones; plyfile is under
+the GPL, and reads binary numbers one by one.
 """
 
 from __future__ import annotations
