@@ -1,7 +1,7 @@
 """PLY, text and binary of both byte orders: vertices, polygons or triangle strips, vertex colours.
 
-Not left to trimesh, which refuses binary files with polygons of several sizes and makes fans of concave ones; plyfile is under
-the GPL, and reads binary numbers one by one.
+Not left to trimesh, which refuses binary files with polygons of several sizes and makes fans of concave ones; plyfile is
+under the GPL, and reads binary numbers one by one.
 """
 
 from __future__ import annotations
