@@ -11,6 +11,13 @@ _LONGEST = 160
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quantization")
 """Required extensions (their names begin so) that change no triangle, or that are read: quantization allows other types."""
 
+_ALLOWED = {
+    "string_pattern_mismatch": "a version that readers of glTF 2.0 read",  # patterns are those of versions alone
+    "too_short": "more elements",
+    "too_long": "fewer elements",
+}
+"""In place of pydantic's words."""
+
 Index = Annotated[int, Field(ge=0)]
 Count = Annotated[int, Field(ge=1)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -149,7 +156,8 @@ def _problem(kind: str, place: tuple[int | str, ...], found: object, message: st
     where = ".".join(str(part) for part in place) or "the document"
     if kind == "missing":
         return f"{where}: found nothing, allowed: this field, which glTF requires"
-    return f"{where}: found {shortened(repr(found))}, allowed: {shortened(message.removeprefix('Input should be '))}"
+    allowed = _ALLOWED.get(kind) or shortened(message.removeprefix("Input should be "))
+    return f"{where}: found {shortened(repr(found))}, allowed: {allowed}"
 
 
 def refused(field: str, found: object, allowed: str) -> ValueError:
@@ -166,5 +174,7 @@ def shortened(text: str) -> str:
 def member(parts: list[Part], index: int, name: str) -> Part:
     """One that another part names. Raises ValueError for one that is not there."""
     if index >= len(parts):
-        raise refused(name, f"a reference to {name}.{index}", f"0 to {len(parts) - 1}")
+        raise refused(
+            name, f"a reference to {name}.{index}", f"0 to {len(parts) - 1}" if parts else "none: it is empty"
+        )
     return parts[index]
