@@ -11,7 +11,7 @@ from jinja2 import Environment, StrictUndefined
 from pydantic import BaseModel, ConfigDict
 
 from ibr_ref.cli.reproduce.findings import Cell, Found, Reproduction, Step
-from ibr_ref.io.files import atomic
+from ibr_ref.io.outputs import atomic
 
 
 class _Page(BaseModel):
