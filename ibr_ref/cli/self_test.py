@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from ibr_ref.cli.progress import progress
 from ibr_ref.cli.tables import show
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from rich.table import Table

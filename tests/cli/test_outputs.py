@@ -102,7 +102,7 @@ def test_json_on_standard_output(run: Run, case: Path, tmp_path: Path, monkeypat
 def test_figures_on_standard_output(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     row = {"scene": "box", "width": 64, "height": 48, "linear_steps": 10, "paper_ms": 16.7}
     times = {f"{what}_{which}_ms": 1.25 for what in ("picture", "stages") for which in ("best", "median")}
-    monkeypatch.setattr("ibr_ref.cli.bench.displacement.times", lambda repeat: [{**row, **times}])
+    monkeypatch.setattr("ibr_ref.bench.displacement.times", lambda repeat: [{**row, **times}])
     code, out, err = run("bench", "displacement", "--json", "-")
     assert code == 0
     assert json.loads(out) == {"displacement": [{**row, **times}]}
@@ -110,7 +110,7 @@ def test_figures_on_standard_output(run: Run, monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_bench_asks_before_it_measures(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ibr_ref.cli.bench.displacement.times", pytest.fail)
+    monkeypatch.setattr("ibr_ref.bench.displacement.times", pytest.fail)
     assert_one_line(run("bench", "displacement", "--json", tmp_path / "none" / "a.json"), "none", "does not exist")
 
 

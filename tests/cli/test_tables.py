@@ -73,7 +73,7 @@ def test_a_terminal(columns: int) -> None:
 def test_a_bench_in_a_pipe(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     keys = {f"{what}_{which}_ms": 123456.7 for what in ("picture", "stages") for which in ("best", "median")}
     row = {"scene": "a name of some length", "width": 1000, "height": 1000, "linear_steps": 50, "paper_ms": 1234.5}
-    monkeypatch.setattr("ibr_ref.cli.bench.displacement.times", lambda repeat: [{**row, **keys}])
+    monkeypatch.setattr("ibr_ref.bench.displacement.times", lambda repeat: [{**row, **keys}])
     monkeypatch.setenv("COLUMNS", "40")
     code, out, _ = run("bench", "displacement")
     assert code == 0
