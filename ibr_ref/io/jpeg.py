@@ -81,9 +81,7 @@ def _pixels_only(data: bytes, segments: list[Segment]) -> bytes:
 
 
 def _usual(segment: Segment, progressive: bool) -> bytes:
-    """The body without three oddities of real files: a newer JFIF, an unknown transform of Adobe's, and the band of
-    coefficients in a scan that has them all.
-    """
+    """The body without oddities of real files: a newer JFIF, an unknown Adobe transform, a band where there is none."""
     body = segment.body
     if segment.marker == _JFIF and body[:5] == b"JFIF\0":
         return body[:5] + b"\1" + body[6:]
