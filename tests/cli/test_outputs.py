@@ -21,6 +21,8 @@ from tests.cli.errors import assert_one_line
 def case(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("cases") / "ball"
     oracle.export(oracle.build("splatting-ball"), folder)
+    (folder / "port").mkdir()
+    (folder / "port" / "color.npy").write_bytes((folder / "expected" / "color.npy").read_bytes())
     return folder
 
 
@@ -75,12 +77,13 @@ def test_a_linked_output(run: Run, height: Path, tmp_path: Path) -> None:
 
 
 def test_verdict_and_report_into_pipes(run: Run, case: Path, tmp_path: Path) -> None:
-    port = case / "expected"
     readers = []
     for name in ("verdict.json", "verdict.html"):
         os.mkfifo(tmp_path / name)
         readers.append(read(tmp_path / name))
-    code, *_ = run("check", case, port, "--json", tmp_path / "verdict.json", "--report", tmp_path / "verdict.html")
+    code, *_ = run(
+        "check", case, case / "port", "--json", tmp_path / "verdict.json", "--report", tmp_path / "verdict.html"
+    )
     assert code == 0
     for thread, _ in readers:
         thread.join(20)
@@ -92,7 +95,7 @@ def test_verdict_and_report_into_pipes(run: Run, case: Path, tmp_path: Path) -> 
 def test_json_on_standard_output(run: Run, case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing else is there; the words are on standard error."""
     monkeypatch.chdir(tmp_path)
-    code, out, err = run("check", case, case / "expected", "--json", "-")
+    code, out, err = run("check", case, case / "port", "--json", "-")
     assert code == 0
     assert json.loads(out)["outcome"] == "PASS"
     assert err.startswith("PASS: splatting-ball")

@@ -24,7 +24,10 @@ _WORDS = {"meaning", "nothing"}
 def check_cameras(where: str, part: Any) -> None:
     """Raise UnusableError for the first camera whose near, far or eye is not that of its matrices, to rounding."""
     for path, camera in _cameras(where, part):
-        found = contradiction(build_camera(camera))
+        try:
+            found = contradiction(build_camera(camera))
+        except ValueError as error:
+            raise ValueError(f"{path}.{error}") from None
         if found is not None:
             raise UnusableError(f"{path}.{found[0]}", *found[1:])
 
