@@ -6,12 +6,17 @@ exit code 2, never a traceback.
 
 from __future__ import annotations
 
+import os
 import sys
+import warnings
 from typing import Annotated
 
 import typer
 
 from ibr_ref.cli import bench, check, demo, displacement, export, reproduce, shadows, splatting
+
+_BROKEN_PIPE = 141
+"""The exit code that a shell gives to a command whose reader has gone; no verdict has it."""
 
 app = typer.Typer(
     name="ibr-ref",
@@ -59,10 +64,15 @@ def main() -> None:
     """Run the command line; bad input ends in one line and exit code 2, an interruption in exit code 130."""
     usage_error = _command_line_error()
     try:
-        code = app(standalone_mode=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # they are for those who call a library; what they lead to is one line
+            code = app(standalone_mode=False)
     except usage_error as error:
         message = error.format_message()  # type: ignore[attr-defined]
         code = _fail(message) if message else 2  # without arguments the help has been printed
+    except BrokenPipeError:  # whoever reads standard output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # or Python complains of what it could not flush
+        code = _BROKEN_PIPE
     except (ValueError, OSError, MemoryError) as error:
         code = _fail(str(error) or type(error).__name__)
     except (KeyboardInterrupt, typer.Abort):
@@ -71,5 +81,7 @@ def main() -> None:
 
 
 def _fail(message: str) -> int:
-    print("ibr-ref: " + " ".join(message.split()), file=sys.stderr)
+    from ibr_ref.scene.checks import LONGEST_MESSAGE, one_line
+
+    print("ibr-ref: " + one_line(message, LONGEST_MESSAGE), file=sys.stderr)
     return 2

@@ -71,6 +71,9 @@ def command(
     facade: Annotated[Path | None, typer.Option(help="Tile that covers steep walls.")] = None,
     facade_tile: Annotated[str, typer.Option(metavar="W,H", help="Size of a facade tile, world units.")] = "0.1,0.1",
     invert_height: Annotated[bool, typer.Option("--invert-height", help="White is deep in the height map.")] = False,
+    no_exif: Annotated[
+        bool, typer.Option("--no-exif", help="Keep the rows as stored: do not turn images as their Exif tags say.")
+    ] = False,
     height_scale: Annotated[
         float, typer.Option(help="Height of white, world units; the map's longer side is 1.")
     ] = 0.15,
@@ -108,7 +111,15 @@ def command(
         if stages is not None:
             io.check_writable(stages)
         polygon = _polygon(
-            height, normal_height, color, normal, facade, options.pair(facade_tile), invert_height, height_scale
+            height,
+            normal_height,
+            color,
+            normal,
+            facade,
+            options.pair(facade_tile),
+            invert_height,
+            height_scale,
+            not no_exif,
         )
         scene = displacement.Scene(
             polygons=[polygon],
@@ -149,6 +160,7 @@ def _polygon(
     facade_tile: tuple[float, float],
     invert_height: bool,
     height_scale: float,
+    exif: bool,
 ) -> BasePolygon:
     """The maps on a rectangle of their own shape: longer side 1, centred, z up, the images' top edge at +y.
 
@@ -159,14 +171,14 @@ def _polygon(
 
     if (height is None) == (normal_height is None) or (normal_height is not None and normal is not None):
         raise typer.BadParameter("give either --height (and perhaps --normal) or --normal-height")
-    normals = None if normal is None else io.read_normal(normal)
+    normals = None if normal is None else io.read_normal(normal, exif)
     if normal_height is not None:
-        normals, heights = io.read_normal_height(normal_height)
+        normals, heights = io.read_normal_height(normal_height, exif)
     else:
         assert height is not None
-        heights = io.read_height(height)
+        heights = io.read_height(height, exif)
     heights = 1.0 - heights if invert_height else heights
-    colors = io.read_color(color) if color else 0.25 + 0.65 * heights[..., None].repeat(3, axis=2)
+    colors = io.read_color(color, exif) if color else 0.25 + 0.65 * heights[..., None].repeat(3, axis=2)
     longest = max(heights.shape)
     across, along = heights.shape[1] / longest, heights.shape[0] / longest
     return BasePolygon(
@@ -176,7 +188,7 @@ def _polygon(
         height_map=heights[::-1],
         color_map=colors[::-1],
         normal_map=None if normals is None else normals[::-1],
-        facade_map=None if facade is None else io.read_color(facade),
+        facade_map=None if facade is None else io.read_color(facade, exif),
         facade_tile=facade_tile,
         height_scale=height_scale,
     )

@@ -6,6 +6,20 @@ import typer
 
 Vector = tuple[float, float, float]
 
+_MOST_DIGITS = 9
+
+
+def refused(text: str, allowed: str) -> typer.BadParameter:
+    """The error for an option's value."""
+    from ibr_ref.scene.checks import one_line  # here: an answer to --help must not wait for NumPy
+
+    return typer.BadParameter(f"found {one_line(repr(text))}, allowed: {allowed}")
+
+
+def _are_whole(parts: list[str]) -> bool:
+    """Whether all are whole numbers; Python refuses to read those with thousands of digits, in its own words."""
+    return all(part.isascii() and part.isdigit() and len(part) <= _MOST_DIGITS for part in parts)
+
 
 def _numbers(text: str, count: int, example: str) -> tuple[float, ...]:
     try:
@@ -13,7 +27,7 @@ def _numbers(text: str, count: int, example: str) -> tuple[float, ...]:
     except ValueError:
         values = ()
     if len(values) != count or any(v != v or abs(v) == float("inf") for v in values):
-        raise typer.BadParameter(f"found {text!r}, allowed: {count} numbers, such as {example}")
+        raise refused(text, f"{count} numbers, such as {example}")
     return values
 
 
@@ -44,8 +58,8 @@ def law(text: str) -> tuple[float, float, float, float]:
 def numbers(text: str) -> list[int]:
     """I,J,..: numbers of cameras."""
     parts = text.split(",")
-    if not all(part.isascii() and part.isdigit() for part in parts):
-        raise typer.BadParameter(f"found {text!r}, allowed: numbers of cameras, such as 0 or 0,1")
+    if not _are_whole(parts):
+        raise refused(text, "numbers of cameras, such as 0 or 0,1")
     return [int(part) for part in parts]
 
 
@@ -54,23 +68,23 @@ def view(text: str) -> tuple[int, int | None, float]:
     first, *rest = text.split(":")
     fraction = rest[1] if len(rest) == 2 else "0.5"
     try:
-        if len(rest) > 2 or not all(part.isascii() and part.isdigit() for part in (first, *rest[:1])):
+        if len(rest) > 2 or not _are_whole([first, *rest[:1]]):
             raise ValueError
         where = float(fraction)
         if not 0.0 <= where <= 1.0:
             raise ValueError
     except ValueError:
         allowed = "a camera, such as 1, or two and a fraction in [0, 1], such as 0:1 or 0:1:0.25"
-        raise typer.BadParameter(f"found {text!r}, allowed: {allowed}") from None
+        raise refused(text, allowed) from None
     return int(first), int(rest[0]) if rest else None, where
 
 
 def size(text: str) -> tuple[int, int]:
     """WIDTHxHEIGHT in pixels."""
     parts = text.lower().split("x")
-    if len(parts) != 2 or not all(part.isascii() and part.isdigit() for part in parts):
-        raise typer.BadParameter(f"found {text!r}, allowed: WIDTHxHEIGHT in pixels, such as 640x480")
+    if len(parts) != 2 or not _are_whole(parts):
+        raise refused(text, "WIDTHxHEIGHT in pixels, such as 640x480")
     width, height = int(parts[0]), int(parts[1])
     if not (1 <= width <= 65536 and 1 <= height <= 65536 and width * height <= 2**28):
-        raise typer.BadParameter(f"found {text!r}, allowed: sides from 1 to 65536, at most 2^28 pixels")
+        raise refused(text, "sides from 1 to 65536, at most 2^28 pixels")
     return width, height

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -125,7 +126,7 @@ def command(
         from ibr_ref import io, models, shadows
 
         io.check_image_writable(out)
-        for path in (stages, None if maps is None or maps.exists() else maps):
+        for path in (stages, None if maps is None or _kept(maps) else maps):
             if path is not None:
                 io.check_writable(path)
         scene = models.shadow_stage(
@@ -188,11 +189,18 @@ def read_caster(path: Path | None, up: Up | None) -> Mesh:
     return models.horse() if path is None else io.read_upright(path, None if up is None else up.value)
 
 
+def _kept(path: Path) -> bool:
+    """Whether maps may be read from there: not from a pipe or a device, which are written to."""
+    from ibr_ref.io.outputs import is_stream
+
+    return os.path.exists(path) and not is_stream(path)  # Path.exists raises for names that are too long
+
+
 def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | None, step: Step) -> Maps:
     """Maps from the file if it is there; otherwise made, and written there if it is named."""
     from ibr_ref import shadows
 
-    if path is not None and path.exists():
+    if path is not None and _kept(path):
         step("reading the maps")
         return shadows.Maps.load(path)
     step(f"preparing nine maps ({controls.value} controls)")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -91,17 +92,17 @@ def read_msr(
     missing = [index for index in indices if index not in calibrations]
     if missing:
         has = ", ".join(map(str, sorted(calibrations)))
-        raise ValueError(f"{path}: found no camera {missing[0]}, allowed: the cameras that it has, {has}")
+        raise ValueError(f"{checks.named(path)}: found no camera {missing[0]}, allowed: the cameras that it has, {has}")
     return tuple(_depth_image(path, index, frame, calibrations[index], near, far) for index in indices)
 
 
 def _calibration_file(folder: Path) -> Path:
-    if not folder.is_dir():
-        raise NotADirectoryError(f"{folder}: is no folder, one with {_PREFIX}NAME.txt is needed")
+    if not os.path.isdir(folder):  # Path.is_dir raises for names that are too long
+        raise NotADirectoryError(f"{checks.named(folder)}: is no folder, one with {_PREFIX}NAME.txt is needed")
     found = sorted(folder.glob(f"{_PREFIX}*.txt"))
     if len(found) != 1:
-        names = ", ".join(path.name for path in found) or "none"
-        raise FileNotFoundError(f"{folder}: found {names}, needed: one file {_PREFIX}NAME.txt")
+        names = checks.one_line(", ".join(path.name for path in found)) or "none"
+        raise FileNotFoundError(f"{checks.named(folder)}: found {names}, needed: one file {_PREFIX}NAME.txt")
     return found[0]
 
 
@@ -110,7 +111,9 @@ def _planes(path: Path, near: float | None, far: float | None) -> tuple[float, f
     if (near is None or far is None) and name not in _PLANES:
         known = ", ".join(_PLANES)
         field = "near" if near is None else "far"
-        raise ValueError(f"{path}: {field}: found None, allowed: a number, or None for the sequences {known}")
+        raise ValueError(
+            f"{checks.named(path)}: {field}: found None, allowed: a number, or None for the sequences {known}"
+        )
     planes = _PLANES.get(name, (0.0, 0.0))
     near = checks.number("near", planes[0] if near is None else near, above=0.0)
     far = checks.number("far", planes[1] if far is None else far)
@@ -147,11 +150,13 @@ def _number(word: str) -> float:
 def _depth_image(path: Path, index: int, frame: int, calibration: _Calibration, near: float, far: float) -> DepthImage:
     depth_path = _image_file(path.parent, index, f"depth-cam{index}-f{frame:03d}.png")
     color_path = _image_file(path.parent, index, f"color-cam{index}-f{frame:03d}.jpg")
-    (codes, last), color = depth_codes(depth_path), read_color(color_path)
+    (codes, last), color = depth_codes(depth_path), read_color(color_path, exif=False)
     height, width = codes.shape
     if color.shape[:2] != codes.shape:
         found = f"{color.shape[1]} x {color.shape[0]} pixels"
-        raise ValueError(f"{color_path}: found {found}, allowed: {width} x {height}, the size of {depth_path.name}")
+        raise ValueError(
+            f"{checks.named(color_path)}: found {found}, allowed: {width} x {height}, the size of {depth_path.name}"
+        )
     with naming(f"{path}: camera {index}"):
         camera = _camera(calibration, width, height, near, far)
     z = 1.0 / (codes / last * (1.0 / near - 1.0 / far) + 1.0 / far)

@@ -14,7 +14,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.io.files import atomic, contents, naming
+from ibr_ref.io.files import contents, naming
+from ibr_ref.io.outputs import atomic
 from ibr_ref.scene import Mesh, checks
 from ibr_ref.shadows import automatic, maps
 from ibr_ref.shadows import controls as placement

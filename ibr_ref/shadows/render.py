@@ -88,6 +88,13 @@ def _direct(scene: Scene, params: Params, sample: Sample) -> Array:
     return values(texels_at(view, np.asarray(scene.offset), params), params.map_samples)
 
 
+def check_maps(scene: Scene, params: Params, maps: object) -> None:
+    """Raise ValueError for what are no maps of the scene and the parameters, with method="warp"."""
+    if not isinstance(maps, Maps):
+        raise checks.reject("maps", type(maps).__name__, "Maps")
+    _nine(scene, params, samples_of(scene, params), maps)
+
+
 def _nine(scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None) -> Maps:
     if maps is None:
         return prepare(scene, params)

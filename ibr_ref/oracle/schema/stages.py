@@ -118,10 +118,11 @@ def expected(frame: Frame) -> dict[str, NDArray[Any]]:
 
 def describe_stages(method: str, frame: Frame) -> tuple[StageFile, ...]:
     """The expected arrays as a document."""
-    return tuple(_stage(method, name, array) for name, array in expected(frame).items())
+    return tuple(describe_stage(method, name, array) for name, array in expected(frame).items())
 
 
-def _stage(method: str, name: str, array: NDArray[Any]) -> StageFile:
+def describe_stage(method: str, name: str, array: NDArray[Any]) -> StageFile:
+    """One expected array as a document. Raises KeyError for a name that the method's contract does not have."""
     parts = name.split(".")
     known = {**IMAGE, **CONTRACTS[method]}
     meaning = known[name] if name in known else known[".".join(parts[:-1])]
