@@ -48,15 +48,11 @@ def command(
 ) -> None:
     """Say whether a port's pictures are right, and if not, where they first go wrong."""
     if self_test:
-        if case is not None:
-            raise typer.BadParameter("--self-test takes no folders")
         from ibr_ref.cli.self_test import run
 
         raise typer.Exit(run(method))
     if case is None or port is None:
         raise typer.BadParameter("found too few folders, allowed: CASE and PORT, or --self-test")
-    if method is not None:
-        raise typer.BadParameter("--method goes with --self-test")
     examination = _examined(case, port, device, json, report)
     if json is not None:
         from ibr_ref.io.files import atomic

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ibr_ref.cli import options
 from ibr_ref.cli.bench import displacement, shadows, splatting, splatting_quality
 
 EXAMPLES = """
@@ -33,7 +34,7 @@ class Method(StrEnum):
 def command(
     method: Annotated[Method, typer.Argument(help="The method to measure.")] = Method.all,
     repeat: Annotated[
-        int, typer.Option(min=1, max=1000, help="Frames of each kind; the best and the median count.")
+        int, typer.Option(parser=options.repeats, help="Frames of each kind, 1 to 1000; the best and the median count.")
     ] = 20,
     msr: Annotated[
         Path | None,
