@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ibr_ref.cli import emptiness, options
-from ibr_ref.cli.progress import progress
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -188,7 +188,7 @@ def command(
         picture.save(out)
     emptiness.say(picture, lambda: splatting.culled(scene, params))
     if report:
-        from ibr_ref.cli.view_quality import report_lines
+        from ibr_ref.cli.splatting_report import report_lines
 
         typer.echo("\n".join(report_lines(scene, params, picture, photograph)))
 
