@@ -145,11 +145,10 @@ def _export() -> dict[str, Beside]:
 
 
 def _check() -> dict[str, Beside]:
+    alone: Others = {"self_test": ABSENT}
     return {
-        **{
-            name: Beside("the self-test has cases and ports of its own", {"self_test": ABSENT})
-            for name in ("case", "port", "device", "json", "report")
-        },
+        **{name: Beside("--self-test takes no folders", alone) for name in ("case", "port")},
+        **{name: Beside("--self-test prints its tables alone", alone) for name in ("device", "json", "report")},
         "self_test": ALWAYS,
-        "method": Beside("a case is of one method", {"self_test": GIVEN}),
+        "method": Beside("--method goes with --self-test", {"self_test": GIVEN}),
     }
