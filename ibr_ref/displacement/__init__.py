@@ -66,7 +66,9 @@ would be shown from beside it is discarded. `"welsh"` has the polygon's window d
   repeated squaring, lowest bit first.
 """
 
+from ibr_ref.displacement.bounds import bounding_points
+from ibr_ref.displacement.culling import culled
 from ibr_ref.displacement.inputs import Params, Scene
 from ibr_ref.displacement.render import render
 
-__all__ = ["Params", "Scene", "render"]
+__all__ = ["Params", "Scene", "bounding_points", "culled", "render"]

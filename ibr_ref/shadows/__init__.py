@@ -57,6 +57,7 @@ warp.* and project.* array has a leading axis of samples. Where no surface is, p
 """
 
 from ibr_ref.scene import AreaLight
+from ibr_ref.shadows.culling import culled, cut_by_light
 from ibr_ref.shadows.grid import MapGrid, prepare_grid
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.prepared import Maps, prepare
@@ -70,6 +71,8 @@ __all__ = [
     "Params",
     "Scene",
     "SoftParams",
+    "culled",
+    "cut_by_light",
     "prepare",
     "prepare_grid",
     "render",

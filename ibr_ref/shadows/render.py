@@ -100,14 +100,7 @@ def _nine(scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | 
         return prepare(scene, params)
     if not isinstance(maps, Maps):
         raise checks.reject("maps", type(maps).__name__, 'Maps, or None, with method="warp"')
-    given = {
-        "map_size": maps.size,
-        "content": maps.content,
-        "map_samples": maps.samples,
-        "rows": maps.controls.shape[2],
-        "columns": maps.controls.shape[3],
-    }
-    _check_made_for(scene, params, given, maps.source)
+    _check_made_for(scene, params, maps.made_with, maps.source)
     x, y = maps.lines
     _check_range(scene, samples, np.array([(x[0], y[0]), (x[2], y[2])]))
     return maps

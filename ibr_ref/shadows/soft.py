@@ -37,6 +37,13 @@ from ibr_ref.shadows.vertex import place
 Array = NDArray[np.float64]
 
 SOFT_METHODS = ("traced", "convolution", "pcss")
+READ_BY: dict[str, tuple[str, ...]] = {
+    "rays": ("traced",),
+    "map_size": ("convolution", "pcss"),
+    **dict.fromkeys(("map_samples", "receiver_planes"), ("convolution",)),
+    **dict.fromkeys(("search_points", "filter_points", "bias"), ("pcss",)),
+}
+"""Fields of `SoftParams` that only some methods read, and these."""
 MOST_RAYS = 65536
 MOST_POINTS = 4096
 """Of either of the percentage-closer filter's regions."""

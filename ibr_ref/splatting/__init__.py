@@ -62,6 +62,7 @@ are also an input: hand your port ours (`atlas.normal`, 8 bits), and judge its o
 
 from ibr_ref.splatting.baking import bake
 from ibr_ref.splatting.coverage import Coverage
+from ibr_ref.splatting.culling import culled
 from ibr_ref.splatting.inputs import Params, Scene
 from ibr_ref.splatting.measures import bounds, coverage, fit_splat_law
 from ibr_ref.splatting.render import render
@@ -78,6 +79,7 @@ __all__ = [
     "bounds",
     "choose_references",
     "coverage",
+    "culled",
     "fit_splat_law",
     "render",
 ]

@@ -259,7 +259,7 @@ def thin() -> Case:
 def stage() -> Case:
     """Of real size."""
     about = "A chair on a stage, 640 x 480, five light samples, maps of 128 x 128, grids of 15 x 5 as in the paper."
-    scene = shadow_stage(models.chair(), offset=(0.23, -0.17))
+    scene = shadow_stage(models.chair(), offset=(0.23, -0.17), near=0.1, far=30.0)
     params = Params(map_size=128, light_samples=5)
     return _case("stage", "real-sized", about, scene, params, profile="webgpu")
 
