@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from ibr_ref.cli import bench, check, demo, displacement, export, reproduce, shadows, splatting
+from ibr_ref.cli import bench, check, demo, displacement, export, method, reproduce, shadows, splatting
 
 app = typer.Typer(
     name="ibr-ref",
@@ -27,6 +27,7 @@ render_app.command("splatting", epilog=splatting.EXAMPLES)(splatting.command)
 render_app.command("shadows", epilog=shadows.EXAMPLES)(shadows.command)
 app.add_typer(render_app, name="render")
 app.command("demo", epilog=demo.EXAMPLES)(demo.command)
+app.command("method", epilog=method.EXAMPLES)(method.command)
 app.command("export", epilog=export.EXAMPLES)(export.command)
 app.command("check", epilog=check.EXAMPLES)(check.command)
 app.command("bench", epilog=bench.EXAMPLES)(bench.command)
