@@ -91,5 +91,7 @@ def _expected(document: Document) -> str:
     for stage in results:
         cells = f"| {stage.name} | {stage.shape} {stage.dtype} | {stage.meaning} | {stage.nothing} |"
         lines.append(cells + (f" {left[stage.name] or '-'} |" if more else ""))
+    if more:
+        lines += ["", '"own": a discarded fragment or point leaves there what any other has.']
     lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
     return "\n".join(lines)
