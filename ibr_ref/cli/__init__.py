@@ -13,7 +13,7 @@ from typing import Annotated
 
 import typer
 
-from ibr_ref.cli import bench, check, demo, displacement, export, reproduce, shadows, splatting
+from ibr_ref.cli import bench, check, demo, displacement, export, method, reproduce, shadows, splatting
 from ibr_ref.cli.command import Command
 
 _BROKEN_PIPE = 141
@@ -33,6 +33,7 @@ render_app.command("splatting", cls=Command, epilog=splatting.EXAMPLES)(splattin
 render_app.command("shadows", cls=Command, epilog=shadows.EXAMPLES)(shadows.command)
 app.add_typer(render_app, name="render")
 app.command("demo", cls=Command, epilog=demo.EXAMPLES)(demo.command)
+app.command("method", cls=Command, epilog=method.EXAMPLES)(method.command)
 app.command("export", cls=Command, epilog=export.EXAMPLES)(export.command)
 app.command("check", cls=Command, epilog=check.EXAMPLES)(check.command)
 app.command("bench", cls=Command, epilog=bench.EXAMPLES)(bench.command)

@@ -31,7 +31,7 @@ def render(
     """Draw receivers and caster with the caster's shadow.
 
     maps: what `prepare` made for this scene's caster, axes and light, for any offset (for method="grid" `prepare_grid`);
-    None: made here, at every call. With `stages` the frame holds every intermediate array (`shadows.__doc__` lists
+    None: made here, at every call. With `stages` the frame holds every intermediate array (`contract.STAGES` lists
     them); without, the same picture and depth sooner. Raises ValueError for inputs that only together are not allowed,
     and for maps that do not fit the scene and the parameters.
     """

@@ -169,7 +169,7 @@ def compared(image, depth, other):
 
 
 def test_camera_0_seen_from_camera_1_is_the_photograph_of_camera_1(breakdancers):
-    """splatting.md, Inputs: 30.5 dB at width 1 with these conventions, and no others (each wrong one costs 5 dB)."""
+    """30.5 dB at width 1 with these conventions, and no others (each wrong one costs 5 dB)."""
     first, second = breakdancers
     quality, coverage = compared(first, first.depth, second)
     assert quality >= 30.5

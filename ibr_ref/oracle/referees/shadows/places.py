@@ -15,7 +15,7 @@ from ibr_ref.oracle.device import Device
 Floats = NDArray[np.float64]
 
 STEP = 2.0 / 3.0
-"""g: the light's samples are at the centres of cells three to an edge (shadows.md, inputs)."""
+"""g: the light's samples are at the centres of cells three to an edge (shadows/method.md, "Light samples")."""
 
 
 @dataclass(frozen=True, eq=False)

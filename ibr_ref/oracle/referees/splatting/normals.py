@@ -24,7 +24,7 @@ Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 
 JUMP = 0.05
-"""Neighbours farther apart than this share of the depth lie on different surfaces (the method's page, stage 1)."""
+"""Neighbours farther apart than this share of the depth lie on different surfaces (splatting/method.md, "Stage normals")."""
 
 CHOICES = (1, -1, 0)
 """Along an axis: the neighbour right or below, left or above, or none."""

@@ -14,6 +14,7 @@ from ibr_ref.oracle.referees.splatting.place import landed
 from ibr_ref.oracle.referees.splatting.splats import Contest, contest
 from ibr_ref.oracle.referees.splatting.table import Table, table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
+from ibr_ref.splatting.contract import STAGES
 
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
@@ -47,12 +48,12 @@ def _contradictions(result: Contest, given: dict[str, NDArray[np.generic]]) -> d
     if "raster.splat" in given:
         found = given["raster.splat"].astype(np.int64)
         agrees &= result.splat == found[result.pixel]
-        empty &= found == -1
+        empty &= found == STAGES["raster.splat"].blank
         bad["raster.splat"] = ~_any(result, agrees, empty)
     if "raster.depth" in given:
         depth = given["raster.depth"].astype(np.float64)
         agrees &= result.depth[result.splat].allows(depth[result.pixel])
-        empty &= depth == 1.0
+        empty &= depth == STAGES["raster.depth"].blank
         bad["raster.depth"] = ~_any(result, agrees, empty)
     if "raster.overdraw" in given:
         count = given["raster.overdraw"].astype(np.int64)

@@ -13,6 +13,7 @@ from ibr_ref.oracle.referees.splatting.lighting import Shades, shades
 from ibr_ref.oracle.referees.splatting.place import Placed, placed
 from ibr_ref.oracle.referees.splatting.table import Table, table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
+from ibr_ref.splatting.contract import STAGES
 
 Bools = NDArray[np.bool_]
 
@@ -63,8 +64,9 @@ def outcomes(where: Placed, handed: Handed) -> tuple[dict[str, Bools], bool]:
         if name in given:
             found = _rows(given[name])
             within = np.logical_and.reduce([bound.allows(found[:, k]) for k, bound in enumerate(bounds)])
-            nothing = (found == 0.0).all(axis=1) if name == "vertex.width" else np.isnan(found).all(axis=1)
-            bad[name] = ~np.where(kept, within & np.isfinite(found).all(axis=1), nothing)
+            left = STAGES[name].left
+            dropped = ((found == left) | (np.isnan(found) & np.isnan(left))).all(axis=1)
+            bad[name] = ~np.where(kept, within & np.isfinite(found).all(axis=1), dropped)
     return bad, True
 
 
