@@ -116,7 +116,7 @@ class Bounded:
 
 
 def exact(value: ArrayLike, device: Device) -> Bounded:
-    """What the port itself has handed in, or a number that every float32 holds."""
+    """A number that every float32 holds."""
     array = np.asarray(value, np.float64)
     return Bounded(array, np.zeros_like(array), device)
 
@@ -125,6 +125,29 @@ def uploaded(value: ArrayLike, device: Device) -> Bounded:
     """A number of the case, rounded once to float32."""
     array = np.asarray(value, np.float64)
     return Bounded(array, np.abs(array - array.astype(np.float32)), device)
+
+
+def stored(value: ArrayLike, device: Device, own: Bounded | None = None) -> Bounded:
+    """What a port has handed in, as it computed with it: rounded to a float32 at most once where it was stored.
+
+    A port that computes with more digits, or whose compiler keeps more in a register, hands in float32 all the same. own:
+    what the number may be by the port's own inputs; where that is one number, and the port's, nothing was rounded.
+    """
+    array = np.asarray(value, np.float64)
+    rounded = np.isfinite(array)
+    if own is not None:
+        rounded &= (own.error != 0.0) | (own.value != array)
+    return Bounded(array, np.where(rounded, device.operation * UNIT * np.abs(array), 0.0), device)
+
+
+def converted(value: ArrayLike, device: Device) -> Bounded:
+    """What a port has handed in of a quotient that the device makes once more before it computes with it.
+
+    A texel k / 255, a depth of 24 bits, s / q in a projective fetch: the one that was handed in is a quotient of the
+    device's, stored; the one that was computed with is another.
+    """
+    number = stored(value, device)
+    return number.widened(np.where(number.error > 0.0, 2.0 * device.quotient * UNIT * np.abs(number.value), 0.0))
 
 
 def total(terms: Sequence[Bounded]) -> Bounded:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, converted, exact, uploaded
 from ibr_ref.oracle.accept.fetch import FILTER_ROUNDINGS, Texture, fetch, texels_near
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.referees.shadows.footprint import reads
@@ -65,9 +65,9 @@ def coordinate(lens: Lens, world: Sequence[Bounded]) -> Coordinate:
 
 
 def handed(found: Floats, w: Bounded) -> Coordinate:
-    """The port's own coordinates (n, 3)."""
+    """The port's own coordinates (n, 3); a projective fetch divides by q_w once more."""
     usable = np.isfinite(found)
-    s, t, r = (exact(np.where(usable[:, k], found[:, k], 0.0), w.device) for k in range(3))
+    s, t, r = (converted(np.where(usable[:, k], found[:, k], 0.0), w.device) for k in range(3))
     return Coordinate(s, t, r, w, np.asarray(~usable.all(axis=1)))
 
 
