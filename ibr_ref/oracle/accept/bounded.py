@@ -140,13 +140,13 @@ def stored(value: ArrayLike, device: Device, own: Bounded | None = None) -> Boun
     return Bounded(array, np.where(rounded, device.operation * UNIT * np.abs(array), 0.0), device)
 
 
-def converted(value: ArrayLike, device: Device) -> Bounded:
+def converted(value: ArrayLike, device: Device, own: Bounded | None = None) -> Bounded:
     """What a port has handed in of a quotient that the device makes once more before it computes with it.
 
     A texel k / 255, a depth of 24 bits, s / q in a projective fetch: the one that was handed in is a quotient of the
-    device's, stored; the one that was computed with is another.
+    device's, stored; the one that was computed with is another. own: as above.
     """
-    number = stored(value, device)
+    number = stored(value, device, own)
     return number.widened(np.where(number.error > 0.0, 2.0 * device.quotient * UNIT * np.abs(number.value), 0.0))
 
 
@@ -188,11 +188,15 @@ def opposite(device: Device) -> float:
 
 
 def power(base: Bounded, exponent: int) -> Bounded:
-    """A whole power of a number >= 0 by products in any order."""
-    result = exact(np.ones_like(base.value), base.device)
+    """A whole power of a number >= 0: by products in any order, or exp2(e log2 x) where x > 0, and 0 where x is 0."""
+    device, least = base.device, np.maximum(base.value, np.finfo(np.float64).tiny)
+    logarithm = np.abs(np.log2(least))
+    off = device.logarithm * np.maximum(logarithm, 1.0) + device.operation * logarithm
+    intrinsic = (exponent * np.log(2.0) * off + device.exponential * (1.0 + exponent * logarithm)) * UNIT
+    result = exact(np.ones_like(base.value), device)
     while exponent:
         if exponent % 2:
             result = result * base
         base = base * base
         exponent //= 2
-    return result
+    return result.widened(np.where(result.size > TINY, result.size * intrinsic, 0.0))

@@ -57,11 +57,19 @@ class ShadowsReferee:
         return up_to((judgement for judgement in found if judgement is not None), first_wrong=to_first_wrong)
 
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
-        """The picture from the case alone."""
+        """The picture from the case alone, with the maps that it hands over, or with the port's own if these are legal."""
         alone = self._of(case, device)
         if self._accepted is None:
             self._accepted = Accepted.of(alone)
-        return self._accepted.judge(handed)
+        judgement = self._accepted.judge(handed)
+        own = {name: handed[name] for name in HANDED_OVER if name in handed}
+        if not own or not judgement.wrong.any() or case.params.method == "direct":
+            return judgement
+        given = Inputs(case, device, own, alone)
+        if any(made is not None and made.wrong.any() for made in (judge(given) for judge in _MADE)):
+            return judgement
+        other = Accepted.of(given).judge(handed)
+        return judgement if judgement.wrong.sum() <= other.wrong.sum() else other
 
     def _of(self, case: Case, device: Device) -> Inputs:
         """What follows from the last case and device is kept for further submissions."""

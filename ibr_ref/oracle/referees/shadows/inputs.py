@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, stored, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, exact, stored, uploaded
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.referees.shadows import places
@@ -215,7 +215,9 @@ class Inputs:
         own = self.own("warp.image")
         if own is not None:
             bad = ~np.isfinite(own[sample])
-            return Map.of(stored(np.where(bad, self.reference("warp.image")[sample], own[sample]), self.device), bad)
+            texels = np.where(bad, self.reference("warp.image")[sample], own[sample])
+            # A map that is rendered was cleared to 1; a warped one holds mixes, rounded to 1 or not.
+            return Map.of(stored(texels, self.device, exact(1.0, self.device) if self.direct else None), bad)
         if self.direct:
             at = places.offset(self.case, self.device)
             return rendered(self.case, self.lenses[sample], at, self.reference("warp.image")[sample])

@@ -72,7 +72,7 @@ def projected(given: Inputs) -> Judgement | None:
             for k, axis in enumerate(at.axes):
                 legal["project.coord"] &= axis.allows(own[pixel, k])
                 np.maximum.at(width, pixel, 2.0 * axis.error)
-            at = handed(own[pixel], at.w)
+            at = handed(own[pixel], at)
         if found is not None:
             flat = found[i].reshape(-1)
             nothing &= flat == 0.0
@@ -145,7 +145,7 @@ def _outcomes(given: Inputs) -> Branches:
     coords, outcomes = given.own("project.coord"), []
     for i, at in enumerate(given.coordinates):
         if coords is not None:
-            at = handed(coords[i].reshape(-1, 3)[seen.pixel], at.w)
+            at = handed(coords[i].reshape(-1, 3)[seen.pixel], at)
         outcomes.append(shadow(given.case, given.map(i), at, seen.caster))
     return branches(given.case, seen, outcomes)
 

@@ -66,7 +66,7 @@ def _shaded(given: Inputs, fragment: int, arrays: Handed, index: tuple[int, ...]
             number(f"{name}s, t, r", [axis[0] for axis in place.axes], None if coords is None else coords[i][index])
         )
         if "project.coord" in given.handed and coords is not None:
-            place = handed(coords[i][index][None], place.w)
+            place = handed(coords[i][index][None], place)
         legal = shadow(given.case, given.map(i), place, caster)
         port = None if own is None else float(own[i][index])
         rows += [*_read(given, i, place, name), _told_shadow(name, legal, port)]
