@@ -1,7 +1,7 @@
 """What the APIs leave undefined, where the methods come near it, and why no case depends on it.
 
-A port may get anything there, and be right. So the cases' scenes keep clear of it: `tests/oracle/test_undefined.py` runs every
-operation of every case and counts those that meet a line of this list; and a `Case` whose light has the exponent 0 is refused.
+A port may get anything there, and be right. So the cases' scenes keep clear of it: `tests/oracle/test_undefined.py` watches
+every operation of every case; and a `Case` whose light has the exponent 0 is refused.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ UNDEFINED = (
     Undefined(
         "x / 0, inversesqrt(0), sqrt(x) where x < 0",
         f"{_GLSL}.1 and 5.9: the result is undefined; Vulkan 1.3: infinity or NaN where the device has them",
-        "v_h, the way to a wall of the volume, q_w, clip w, the law's denominator, the cells of the nine maps: never exactly 0 "
-        "in a case.",
+        "v_h, the way to a wall of the volume, q_w, clip w, the law's denominator, the cells of the nine maps: never exactly "
+        "0 in a case.",
     ),
     Undefined(
         "min, max and clamp of NaN; clamp where the upper end lies below the lower one",

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import TINY, UNIT, Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.splatting.lighting import Shades, shades
@@ -87,6 +87,6 @@ def wrong_color(colors: Shades, found: NDArray[np.float64]) -> Bools:
     """All channels must agree with the same branch."""
     agrees = np.zeros(len(found), np.bool_)
     for color, legal in colors.branches:
-        # Stored as a float32 once more.
-        agrees |= legal & color.widened(UNIT * np.abs(color.value)).allows(found).all(axis=1)
+        # Stored as a float32 once more; what is less than a normal number is 0 where denormals are flushed.
+        agrees |= legal & color.widened(UNIT * np.abs(color.value) + TINY).allows(found).all(axis=1)
     return ~agrees
