@@ -38,8 +38,8 @@ UNDEFINED = (
     Undefined(
         "x / 0, inversesqrt(0), sqrt(x) where x < 0",
         f"{_GLSL}.1 and 5.9: the result is undefined; Vulkan 1.3: infinity or NaN where the device has them",
-        "v_h, the way to a wall of the volume, q_w, clip w, the law's denominator, the cells of the nine maps: never exactly "
-        "0 in a case.",
+        "v_h, the way to a wall of the volume, q_w, clip w, the law's denominator, the cells of the nine maps: never "
+        "exactly 0 in a case.",
     ),
     Undefined(
         "min, max and clamp of NaN; clamp where the upper end lies below the lower one",

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from ibr_ref import displacement, shadows, splatting
+from ibr_ref.oracle.referees.reads import READS
 from ibr_ref.oracle.schema import Document
 
 _METHODS = {"displacement": displacement, "splatting": splatting, "shadows": shadows}
@@ -26,11 +27,17 @@ def json_text(value: Any, indent: str = "") -> str:
     return json.dumps(value, allow_nan=False, ensure_ascii=False)
 
 
+def _reads(method: str, name: str) -> str:
+    reads = READS[method]
+    return ", ".join(reads[name if name in reads else name.rpartition(".")[0]]) or "-"
+
+
 def readme(document: Document) -> str:
     """What a port author reads first."""
     conventions = "\n".join(f"- **{name}**: {words}" for name, words in document.conventions.items())
     stages = "\n".join(
-        f"| {stage.name} | {stage.shape} {stage.dtype} | {stage.meaning} | {stage.nothing} |"
+        f"| {stage.name} | {stage.shape} {stage.dtype} | {stage.meaning} | {stage.nothing} "
+        f"| {_reads(document.method, stage.name)} |"
         for stage in document.expected
         if stage.kind == "result"
     )
@@ -50,9 +57,14 @@ reference draws. Draw the scene, write your arrays into a folder under the names
 
 ## Expected
 
-| name | shape, dtype | meaning | where nothing is |
-|---|---|---|---|
+| name | shape, dtype | meaning | where nothing is | judged on your |
+|---|---|---|---|---|
 {stages}
+
+An array is judged on those of yours that it is computed from; one that you do not hand in is made of what it reads in turn,
+and at last of the case. Normals and the nine maps, which a case hands over, you may also make yourself, and go on with
+either.
+No case depends on what the APIs leave undefined, such as pow(0, 0) or normalize(0).
 
 ## The method
 
