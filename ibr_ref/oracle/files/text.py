@@ -62,8 +62,8 @@ reference draws. Draw the scene, write your arrays into a folder under the names
 {stages}
 
 An array is judged on those of yours that it is computed from; one that you do not hand in is made of what it reads in turn,
-and at last of the case. Normals and the nine maps, which a case hands over, you may also make yourself, and go on with
-either.
+and at last of the case. Normals and the nine maps, which a case hands over, you may also make yourself and go on with, if
+you hand them in.
 No case depends on what the APIs leave undefined, such as pow(0, 0) or normalize(0).
 
 ## The method
