@@ -11,6 +11,7 @@ from ibr_ref.contract import described, spelled
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.files.features import features
 from ibr_ref.oracle.files.fields import field_list, input_table
+from ibr_ref.oracle.referees.reads import READS
 from ibr_ref.oracle.schema import Document
 from ibr_ref.oracle.schema.stages import CONTRACTS
 from ibr_ref.pages import excerpt
@@ -27,6 +28,11 @@ def json_text(value: Any, indent: str = "") -> str:
     if isinstance(value, (list, tuple)) and any(isinstance(item, dict) for item in value):
         return "[\n" + ",\n".join(inner + json_text(item, inner) for item in value) + f"\n{indent}]"
     return json.dumps(value, allow_nan=False, ensure_ascii=False)
+
+
+def _reads(method: str, name: str) -> str:
+    reads = READS[method]
+    return ", ".join(reads[name if name in reads else name.rpartition(".")[0]]) or "-"
 
 
 def readme(document: Document) -> str:
@@ -77,6 +83,11 @@ NAMES, from the tightest to the loosest; without, the tightest one that explains
 looked for.""".replace("NAMES", ", ".join(PROFILES))
 
 
+_JUDGED_ON = """An array is judged on those of yours that it is computed from; one that you do not hand in is made of what it
+reads in turn, and at last of the case. Normals and the nine maps, which a case hands over, you may also make yourself and go
+on with, if you hand them in. No case depends on what the APIs leave undefined, such as pow(0, 0) or normalize(0)."""
+
+
 def _expected(document: Document) -> str:
     """The table of the results, and the names of the margins."""
     results = [stage for stage in document.expected if stage.kind == "result"]
@@ -85,13 +96,16 @@ def _expected(document: Document) -> str:
     left = {stage.name: spelled(described(contract, stage.name).discarded) for stage in results}
     more = any(left.values())
     lines = [
-        f"| name | shape, dtype | meaning | where nothing is |{' where discarded |' if more else ''}",
-        f"|---|---|---|---|{'---|' if more else ''}",
+        f"| name | shape, dtype | meaning | where nothing is |{' where discarded |' if more else ''} judged on your |",
+        f"|---|---|---|---|{'---|' if more else ''}---|",
     ]
     for stage in results:
         cells = f"| {stage.name} | {stage.shape} {stage.dtype} | {stage.meaning} | {stage.nothing} |"
-        lines.append(cells + (f" {left[stage.name] or '-'} |" if more else ""))
+        lines.append(
+            cells + (f" {left[stage.name] or '-'} |" if more else "") + f" {_reads(document.method, stage.name)} |"
+        )
     if more:
         lines += ["", '"own": a discarded fragment or point leaves there what any other has.']
+    lines += ["", _JUDGED_ON]
     lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
     return "\n".join(lines)

@@ -110,7 +110,7 @@ def steps(surface: Surface, axis: int) -> Steps:
         maybe[side] = there & (margin >= -off), there & (margin >= off)
     after, before = sizes[1], sizes[-1]
     first, off = after.value <= before.value, after.error + before.error
-    close = (np.abs(after.value - before.value) <= off) & (off > 0.0)
+    close = (np.abs(after.value - before.value) <= off) & (off > 0.0) & ~_same(surface.depth.value, surface.valid, axis)
     (after_maybe, after_sure), (before_maybe, before_sure) = maybe[1], maybe[-1]
     legal = {
         1: after_maybe & (~before_sure | first | close),
@@ -119,6 +119,12 @@ def steps(surface: Surface, axis: int) -> Steps:
     }
     takes_after = usable[1] & (~usable[-1] | first)
     return Steps(legal, np.where(takes_after, 1, np.where(usable[-1], -1, 0)))
+
+
+def _same(depth: NDArray[np.float64], valid: Bools, axis: int) -> Bools:
+    """Both neighbours have one depth: their distances are made of the same numbers, and tie on every device."""
+    after, before = (_shifted(np.where(valid, depth, np.nan), axis, side, np.nan) for side in (1, -1))
+    return np.asarray(after == before)
 
 
 def _difference(a: Bounded, b: Bounded) -> Bounded:
