@@ -13,7 +13,8 @@ from typing import Annotated
 
 import typer
 
-from ibr_ref.cli import bench, check, demo, displacement, export, reproduce, shadows, splatting
+from ibr_ref.cli import bench, check, demo, displacement, export, method, reproduce, shadows, splatting
+from ibr_ref.cli.command import Command
 
 _BROKEN_PIPE = 141
 """The exit code that a shell gives to a command whose reader has gone; no verdict has it."""
@@ -27,15 +28,16 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 render_app = typer.Typer(no_args_is_help=True, help="Render your own input with one of the methods.")
-render_app.command("displacement", epilog=displacement.EXAMPLES)(displacement.command)
-render_app.command("splatting", epilog=splatting.EXAMPLES)(splatting.command)
-render_app.command("shadows", epilog=shadows.EXAMPLES)(shadows.command)
+render_app.command("displacement", cls=Command, epilog=displacement.EXAMPLES)(displacement.command)
+render_app.command("splatting", cls=Command, epilog=splatting.EXAMPLES)(splatting.command)
+render_app.command("shadows", cls=Command, epilog=shadows.EXAMPLES)(shadows.command)
 app.add_typer(render_app, name="render")
-app.command("demo", epilog=demo.EXAMPLES)(demo.command)
-app.command("export", epilog=export.EXAMPLES)(export.command)
-app.command("check", epilog=check.EXAMPLES)(check.command)
-app.command("bench", epilog=bench.EXAMPLES)(bench.command)
-app.command("reproduce", epilog=reproduce.EXAMPLES)(reproduce.command)
+app.command("demo", cls=Command, epilog=demo.EXAMPLES)(demo.command)
+app.command("method", cls=Command, epilog=method.EXAMPLES)(method.command)
+app.command("export", cls=Command, epilog=export.EXAMPLES)(export.command)
+app.command("check", cls=Command, epilog=check.EXAMPLES)(check.command)
+app.command("bench", cls=Command, epilog=bench.EXAMPLES)(bench.command)
+app.command("reproduce", cls=Command, epilog=reproduce.EXAMPLES)(reproduce.command)
 
 
 def _print_version(wanted: bool) -> None:

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from ibr_ref.bench import displacement, shadows, splatting, splatting_quality
-from ibr_ref.cli import json_output
+from ibr_ref.cli import json_output, options
 from ibr_ref.cli.tables import show
 
 EXAMPLES = """
@@ -36,7 +36,7 @@ class Method(StrEnum):
 def command(
     method: Annotated[Method, typer.Argument(help="The method to measure.")] = Method.all,
     repeat: Annotated[
-        int, typer.Option(min=1, max=1000, help="Frames of each kind; the best and the median count.")
+        int, typer.Option(parser=options.repeats, help="Frames of each kind, 1 to 1000; the best and the median count.")
     ] = 20,
     msr: Annotated[
         Path | None,

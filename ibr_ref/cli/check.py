@@ -52,15 +52,11 @@ def command(
 ) -> None:
     """Say whether a port's pictures are right, and if not, where they first go wrong."""
     if self_test:
-        if case is not None:
-            raise typer.BadParameter("--self-test takes no folders")
         from ibr_ref.cli.self_test import run
 
         raise typer.Exit(run(method))
     if case is None or port is None:
         raise typer.BadParameter("found too few folders, allowed: CASE and PORT, or --self-test")
-    if method is not None:
-        raise typer.BadParameter("--method goes with --self-test")
     examination = _examined(case, port, device, json, report)
     json_output.write(json, examination.verdict.model_dump_json(indent=2))
     typer.echo(examination.verdict.words(), err=json_output.is_standard_output(json))

@@ -92,6 +92,13 @@ def numbers(field: str, value: Any, allowed: str) -> NDArray[np.float64]:
         raise reject(field, value, allowed) from None
 
 
+def finite_rows(field: str, array: NDArray[np.float64]) -> None:
+    """Raise ValueError for the first row of an array (N, K) that is not finite."""
+    bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
+    if len(bad):
+        raise reject(f"{field}[{bad[0]}]", array[bad[0]].tolist(), "finite numbers")
+
+
 def vector(field: str, value: ArrayLike, length: int = 3) -> NDArray[np.float64]:
     """A read-only float64 array of `length` finite numbers."""
     allowed = f"{length} finite numbers"

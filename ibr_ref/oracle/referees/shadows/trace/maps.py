@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.accept.bounded import exact, uploaded
+from ibr_ref.oracle.accept.bounded import stored, uploaded
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.shadows import maps, places, replay_maps
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
@@ -52,7 +52,7 @@ def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRo
         lens = given.centre_lens
         own = given.own("maps.positions", sampled=False)
         line = [p[n] for p, n in zip(places.positions(case, device), index[1::-1], strict=True)]
-        at = line if own is None else [exact(n, device) for n in own[index[:2]]]
+        at = line if own is None else [stored(n, device, legal) for n, legal in zip(own[index[:2]], line, strict=True)]
     elif given.count > 1:
         lens = given.lenses[index[0]]
     size = int(case.params.map_size) * (1 if depth else k)
