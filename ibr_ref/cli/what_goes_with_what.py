@@ -44,6 +44,7 @@ def table() -> dict[str, dict[str, Beside]]:
             **_always("method", "repeat", "json"),
             "msr": Beside("photographs are splatted", {"method": ("all", "splatting")}),
         },
+        "method": _always("name"),
         "reproduce": _always("paper", "out", "again"),
     }
 
