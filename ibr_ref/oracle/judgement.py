@@ -37,7 +37,14 @@ class Judgement:
     width: NDArray[np.float64]
     """Width of the accepted set of continuous results (the widest of the element's numbers); NaN where there is none."""
     blame: NDArray[np.int8]
-    """Index in `arrays` of the first one that disagrees; -1 where nothing does."""
+    """Index in `arrays`, which stand in order of computation, of the first one that disagrees; -1 where nothing does."""
+    places: NDArray[np.int64] | None = None
+    """(elements, k) where each of a row of elements stands in the arrays: page, row and column of an atlas. None: at its own
+    index."""
+
+    def place(self, index: tuple[int, ...]) -> tuple[int, ...]:
+        """An element's index in the port's arrays."""
+        return index if self.places is None else tuple(self.places[index].tolist())
 
     def __post_init__(self) -> None:
         shapes = {a.shape for a in (self.wrong, self.undecided, self.width, self.blame)}
@@ -71,6 +78,10 @@ class TraceRow:
     """The most that the device's freedom can move it; smaller than the margin: the decision is certain."""
     note: str = ""
     """"certain", "either way is legal", "differs"."""
+    array: str = ""
+    """The port's array whose numbers these are, where the row is that of one: it heads the witness."""
+    index: tuple[int, ...] | None = None
+    """Where they stand in that array, if not at the element's own index."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,8 +115,14 @@ class Referee(Protocol):
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
         """The final colour, and depth where it is handed in, from the case alone."""
 
-    def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
-        """The computation of one element of a stage, reference and port side by side."""
+    def trace(
+        self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...], array: str | None = None
+    ) -> list[TraceRow]:
+        """The computation of one element of a stage, reference and port side by side, replayed from the port's arrays.
+
+        index: in the stage's judgement. array: of that judgement, where the stage has several. The numbers of each array
+        that was handed in have a row that says so (`TraceRow.array`).
+        """
 
     def parameters(self, case: Case) -> list[Parameter]:
         """The continuous parameters that move the image."""

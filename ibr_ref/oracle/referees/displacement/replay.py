@@ -29,12 +29,13 @@ Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
 ARRAYS = {
-    "vertex": ("vertex.clip", "vertex.patch"),
+    "vertex": ("vertex.patch", "vertex.clip"),
     "raster": ("raster.face", "raster.patch_id", "raster.patch"),
     "march": ("march.linear_index", "march.hit_index", "march.hit", "march.height_before", "march.steep"),
     "shade": ("shade.albedo", "shade.normal", "shade.lit"),
 }
-"""What is compared in each stage; besides, in shade the colours of what is shown, and in resolve depth and background."""
+"""What is compared in each stage, in order of computation; besides, in shade the colours of what is shown, and in resolve
+depth and background."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -92,7 +93,7 @@ def raster_input(port: Port) -> tuple[Fragments, tuple[str, ...]]:
     """The candidates of the port's own vertices, where it has as many as the reference."""
     faces = port.candidates.faces
     count = sum(len(each.patch.value) for each in faces)
-    if "vertex.clip" not in port.handed or len(port.handed["vertex.clip"]) != count:
+    if "vertex.clip" not in port.handed or any(len(port.handed[name]) != count for name in port.names("vertex")):
         return port.candidates.fragments, ()
     ends = np.cumsum([len(each.patch.value) for each in faces])[:-1]
     names = port.names("vertex")

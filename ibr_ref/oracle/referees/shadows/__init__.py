@@ -60,9 +60,11 @@ class ShadowsReferee:
             self._alone, self._accepted = Inputs(case, device), None
         return self._alone
 
-    def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
+    def trace(
+        self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...], array: str | None = None
+    ) -> list[TraceRow]:
         """The computation of one element; index: that in its stage's judgement."""
-        return trace(case, device, handed, stage, index)
+        return trace(Inputs(case, device, handed, self._of(case, device)), stage, index, array)
 
     def parameters(self, case: Case) -> list[Parameter]:
         """What moves the image."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.accept.bounded import exact
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.shadows import resolve
-from ibr_ref.oracle.referees.shadows.accumulate import accumulated
+from ibr_ref.oracle.referees.shadows.accumulate import accumulated, in_bytes
 from ibr_ref.oracle.referees.shadows.branches import Branches, branches, in_shadow, spread
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement
@@ -105,7 +105,8 @@ def sums(given: Inputs) -> Judgement | None:
     if own is not None:
         shadows = [exact(_numbers(s), given.device) for s in own]
         bound = accumulated(shadows, given.case.params.accumulation == "unorm8")
-        right = bound.allows(found) | ~np.isfinite(own.sum(axis=0))  # what is no number is wrong before
+        # What is no number is wrong before.
+        right = (bound.allows(found) & _stored(given, found)) | ~np.isfinite(own).all(axis=0)
         width = np.broadcast_to(2.0 * bound.error, found.shape)
         return judgement("accumulate", "pixel", [name], [right], width, replayed=["project.shadow"])
     seen, outcomes = given.seen, _outcomes(given)
@@ -114,12 +115,20 @@ def sums(given: Inputs) -> Judgement | None:
     legal = outcomes.shadow.allows(found.reshape(-1)[pixel]) & fragments[outcomes.fragment]
     right = seen.any_of(pixel, legal, nothing & (found.reshape(-1) == 0.0))
     right[seen.pixel[outcomes.crowded]] = True
+    right &= _stored(given, found).reshape(-1)
     width = np.zeros(found.size)
     np.maximum.at(width, pixel, 2.0 * np.broadcast_to(outcomes.shadow.error, pixel.shape))
     feeds = [n for n in ("warp.image", "depth", "project.coord") if n in given.handed]
     return judgement(
         "accumulate", "pixel", [name], [right.reshape(seen.shape)], width.reshape(seen.shape), replayed=feeds
     )
+
+
+def _stored(given: Inputs, found: Floats) -> Bools:
+    """Whether sums may be what the accumulation's buffer holds."""
+    if given.case.params.accumulation == "unorm8":
+        return in_bytes(found, given.device)
+    return np.isfinite(found)
 
 
 def _numbers(array: Floats) -> Floats:

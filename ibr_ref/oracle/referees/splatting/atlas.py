@@ -16,11 +16,18 @@ from ibr_ref.oracle.referees.splatting.verdict import judgement
 
 Bools = NDArray[np.bool_]
 
-ARRAYS = ("atlas.rects", "atlas.color", "atlas.depth", "atlas.normal")
+ARRAYS = ("atlas.color", "atlas.depth", "atlas.normal")
+
+
+def judge_rects(case: Case, device: Device, handed: Handed) -> Judgement:
+    """Where each image lies."""
+    wrong = (np.asarray(handed["atlas.rects"]) != case.frame.stages["atlas.rects"]).any(axis=1)
+    nothing = np.full(len(wrong), np.nan)
+    return judgement("atlas", "image", {"atlas.rects": wrong}, np.zeros_like(wrong), nothing)
 
 
 def judge(case: Case, device: Device, handed: Handed) -> Judgement:
-    """All texels of all pages of the reference's, as one row of elements; a wrong rectangle is one of all its texels.
+    """All texels of all pages of the reference's, as one row of elements.
 
     Normals are judged by their own stage; here only that there are none beside the images.
     """
@@ -28,9 +35,6 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     owners = _owners(stages["atlas.rects"], [page.shape[:2] for page in stages["atlas.depth"]])
     bad: dict[str, Bools] = {}
     width = np.full(sum(owner.size for owner in owners), np.nan)
-    if "atlas.rects" in handed:
-        differs = (np.asarray(handed["atlas.rects"]) != stages["atlas.rects"]).any(axis=1)
-        bad["atlas.rects"] = _flat([np.r_[differs, False][owner] for owner in owners])
     for name, bounds in texels(case, device).items():
         if name in handed:
             pages = [page_of(handed[name], i, bound.value.shape) for i, bound in enumerate(bounds)]
@@ -39,7 +43,14 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     if "atlas.normal" in handed:
         pages = [page_of(handed["atlas.normal"], i, page.shape) for i, page in enumerate(stages["atlas.normal"])]
         bad["atlas.normal"] = _flat([(owner < 0) & ~_all(page == 0) for owner, page in zip(owners, pages, strict=True)])
-    return judgement("atlas", "texel", bad, np.zeros(len(width), np.bool_), width)
+    return judgement("atlas", "texel", bad, np.zeros(len(width), np.bool_), width, places=_places(owners))
+
+
+def _places(pages: list[NDArray[np.int64]]) -> NDArray[np.int64]:
+    """(texels, 3) page, row and column."""
+    return np.concatenate(
+        [np.insert(np.indices(page.shape).reshape(2, -1).T, 0, number, axis=1) for number, page in enumerate(pages)]
+    )
 
 
 def texels(case: Case, device: Device) -> dict[str, list[Bounded]]:

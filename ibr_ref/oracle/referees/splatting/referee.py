@@ -13,18 +13,19 @@ from ibr_ref.oracle.referees.splatting.trace import trace
 
 JUDGES = {
     "normals": (("atlas.normal",), normals.judge),
+    "rectangles": (("atlas.rects",), atlas.judge_rects),
     "atlas": (atlas.ARRAYS, atlas.judge),
     "vertex": (vertex.ARRAYS, vertex.judge),
     "raster": (raster.ARRAYS, raster.judge),
     "resolve": (("color", "depth"), image.judge_resolve),
 }
-"""For each stage the arrays that it is compared by, and how."""
+"""For each stage, or kind of element of one, the arrays that it is compared by, and how."""
 
 
 class SplattingReferee:
     """Judges ports of splatting; fulfils `ibr_ref.oracle.judgement.Referee`."""
 
-    stages: Sequence[str] = tuple(JUDGES)
+    stages: Sequence[str] = ("normals", "atlas", "vertex", "raster", "resolve")
 
     def judge_stages(
         self, case: Case, device: Device, handed: Handed, *, to_first_wrong: bool = False
@@ -37,9 +38,11 @@ class SplattingReferee:
         """The picture, and depth where it is handed in, from the case alone."""
         return image.judge_image(case, device, handed)
 
-    def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
+    def trace(
+        self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...], array: str | None = None
+    ) -> list[TraceRow]:
         """The computation of one element of a stage, reference and port side by side."""
-        return trace(case, device, handed, stage, index)
+        return trace(case, device, handed, stage, index, array)
 
     def parameters(self, case: Case) -> list[Parameter]:
         """The continuous parameters that move the image."""

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, TraceRow
+from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.shadows import replay_maps
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.trace.maps import control, map_texel, position
@@ -25,18 +23,17 @@ STEPS = {
 PICTURES = ("depth", "project", "accumulate", "resolve", "image")
 
 
-def trace(case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
+def trace(given: Inputs, stage: str, index: tuple[int, ...], array: str | None = None) -> list[TraceRow]:
     """Rows of one element, by its index in its judgement.
 
-    A stage has elements of several kinds; an index that fits more than one belongs to the first that is wrong there. Raises
-    ValueError for a stage that the method has not, and for an index that no element has.
+    A stage has elements of several kinds, by their array; without one, an index that fits more than one belongs to the first
+    that is wrong there. Raises ValueError for a stage that the method has not, and for an index that no element has.
     """
     if stage in PICTURES:
-        return pixel(case, device, handed, stage, index)
+        return pixel(given, stage, index)
     if stage not in STEPS:
         raise ValueError(f"stage: found {stage!r}, allowed: {' | '.join([*STEPS, *PICTURES])}")
-    given = Inputs(case, device, handed)
-    array = _array(given, stage, index)
+    array = array or _array(given, stage, index)
     if array == "maps.positions":
         return position(given, index)
     if array == "maps.image" or (array == "warp.image" and given.direct):
