@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref import io, models
-from ibr_ref.cli.shadow_quality import iou, soft_difference
+from ibr_ref.metrics import iou, soft_difference
 from ibr_ref.scene import Mesh
 from ibr_ref.shadows import MapGrid, Maps, Params, Scene, prepare, prepare_grid, render, shadow_maps
 
