@@ -138,7 +138,7 @@ def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -
     head = heading(rows, array) or _from_the_frame(case, handed, array, judgement.place(index))
     return Witness(
         stage=judgement.stage,
-        element=judgement.element,
+        element=head.element or judgement.element,
         index=judgement.place(index) if head.index is None else head.index,
         array=array,
         reference=head.reference or "nothing",

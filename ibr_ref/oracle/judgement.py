@@ -82,6 +82,8 @@ class TraceRow:
     """The port's array whose numbers these are, where the row is that of one: it heads the witness."""
     index: tuple[int, ...] | None = None
     """Where they stand in that array, if not at the element's own index."""
+    element: str = ""
+    """What stands there, if not such an element."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from ibr_ref import oracle
+from ibr_ref.cli import main
 from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.plugin import PortCase
 from ibr_ref.oracle.verdict import Outcome
 from tests.oracle.fuzz_submissions import BLOCK, Input, complaint, made, replacements, run
 from tests.oracle.tiny_cases import TINY, handed_of
@@ -43,3 +48,28 @@ def test_inputs_follow_from_their_numbers() -> None:
             np.testing.assert_equal(one.handed[name], again.handed[name])
     assert {made(BLOCK * i, 0).profile for i in range(len(TINY) * len(PROFILES))} == {*PROFILES}
     assert len([*run(range(5, 8), 0, 1)]) == 3
+
+
+def test_the_plugin_answers_too(tmp_path: Path) -> None:
+    case = TINY["shadows-warp"]()
+    stages = handed_of(case)
+    picture = {name: stages.pop(name) for name in ("color", "depth")}
+    stages["warp.grid"] = np.zeros_like(stages["warp.grid"])
+    with pytest.raises(pytest.fail.Exception, match="first wrong in stage warp"):
+        PortCase(case, None, tmp_path, tmp_path).check(**picture, stages=stages)
+    assert (tmp_path / "shadows-warp.html").stat().st_size
+
+
+def test_the_command_line_answers_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case, port = TINY["shadows-warp"](), tmp_path / "port"
+    oracle.export(case, tmp_path / "case")
+    port.mkdir()
+    for name, array in handed_of(case).items():
+        np.save(port / f"{name}.npy", np.zeros_like(array) if name == "warp.row_grids" else array)
+    monkeypatch.setattr("sys.argv", ["ibr-ref", "check", str(tmp_path / "case"), str(port)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 1
+    assert "FAIL: shadows-warp, first wrong in stage warp" in capsys.readouterr().out

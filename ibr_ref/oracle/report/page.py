@@ -58,12 +58,12 @@ def _asset(name: str) -> str:
 
 
 def _start(examination: Examination) -> tuple[int, int]:
-    """The pixel (x, y) that the inspector shows at first: the witness, if that is a pixel, else the middle."""
+    """The pixel (x, y) that the inspector shows at first: the first witness that is one, else the middle."""
     height, width = examination.case.frame.color.shape[:2]
-    witness = examination.verdict.witness
-    if witness is not None and witness.element == "pixel":  # of several light samples the sample comes first
-        row, column = witness.index[-2:]
-        return column, row
+    for witness in examination.verdict.witnesses:
+        if witness.element == "pixel":  # of several light samples the sample comes first
+            row, column = witness.index[-2:]
+            return column, row
     return width // 2, height // 2
 
 

@@ -59,26 +59,26 @@ def projected(given: Inputs) -> Judgement | None:
     if not names:
         return None
     seen, pixel = given.seen, given.seen.pixel
-    fragments, nothing = _agreeing(given)
-    legal = {name: fragments.copy() for name in names}
+    fragments, bare = _agreeing(given)
+    legal, nothing = {name: fragments.copy() for name in names}, {name: bare.copy() for name in names}
     undecided, width = seen.wild.copy(), np.zeros(len(seen.empty))
     for i, at in enumerate(given.coordinates):
         if coords is not None:
             own = coords[i].reshape(-1, 3)
-            nothing &= (own == 0.0).all(axis=1)
+            nothing["project.coord"] &= (own == 0.0).all(axis=1)
             for k, axis in enumerate(at.axes):
                 legal["project.coord"] &= axis.allows(own[pixel, k])
                 np.maximum.at(width, pixel, 2.0 * axis.error)
             at = handed(own[pixel], at.w)
         if found is not None:
             flat = found[i].reshape(-1)
-            nothing &= flat == 0.0
+            nothing["project.shadow"] &= flat == 0.0
             shadows = shadow(given.case, given.map(i), at, seen.caster)
             legal["project.shadow"] &= shadows.allows(flat[pixel])
             undecided[pixel[_differs(shadows)]] = True
             np.maximum.at(width, pixel, 2.0 * np.broadcast_to(shadows.first.error, pixel.shape))
-    right = [seen.any_of(pixel, legal[name], nothing).reshape(seen.shape) for name in names]
-    every = np.logical_and.reduce([legal[name] for name in names])
+    right = [seen.any_of(pixel, legal[name], nothing[name]).reshape(seen.shape) for name in names]
+    every = [np.logical_and.reduce([each[name] for name in names]) for each in (legal, nothing)]
     return judgement(
         "project",
         "pixel",
@@ -87,7 +87,7 @@ def projected(given: Inputs) -> Judgement | None:
         width.reshape(seen.shape),
         replayed=[name for name in ("warp.image", "depth") if name in given.handed],
         undecided=undecided.reshape(seen.shape),
-        together=seen.any_of(pixel, every, nothing).reshape(seen.shape),
+        together=seen.any_of(pixel, *every).reshape(seen.shape),
     )
 
 

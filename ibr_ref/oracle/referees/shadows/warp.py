@@ -144,7 +144,7 @@ def _on_border(rows: int, columns: int) -> NDArray[np.bool_]:
     corners = _corners(np.repeat(number, 2, axis=2))[..., 0].astype(np.int64)
     edges = np.sort(np.stack([corners[:, [(i + 1) % 3, (i + 2) % 3]] for i in range(3)], axis=1), axis=2)
     _, index, count = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True, return_counts=True)
-    return np.asarray((count[index.reshape(-1)] == 1).reshape(-1, 3), np.bool_)
+    return np.asarray(count == 1, np.bool_)[index.reshape(-1)].reshape(-1, 3)
 
 
 def grid_corners(grid: Bounded) -> Bounded:

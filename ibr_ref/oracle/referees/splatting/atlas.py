@@ -16,18 +16,11 @@ from ibr_ref.oracle.referees.splatting.verdict import judgement
 
 Bools = NDArray[np.bool_]
 
-ARRAYS = ("atlas.color", "atlas.depth", "atlas.normal")
-
-
-def judge_rects(case: Case, device: Device, handed: Handed) -> Judgement:
-    """Where each image lies."""
-    wrong = (np.asarray(handed["atlas.rects"]) != case.frame.stages["atlas.rects"]).any(axis=1)
-    nothing = np.full(len(wrong), np.nan)
-    return judgement("atlas", "image", {"atlas.rects": wrong}, np.zeros_like(wrong), nothing)
+ARRAYS = ("atlas.rects", "atlas.color", "atlas.depth", "atlas.normal")
 
 
 def judge(case: Case, device: Device, handed: Handed) -> Judgement:
-    """All texels of all pages of the reference's, as one row of elements.
+    """All texels of all pages of the reference's, as one row of elements; a wrong rectangle is one of all its texels.
 
     Normals are judged by their own stage; here only that there are none beside the images.
     """
@@ -35,6 +28,9 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     owners = _owners(stages["atlas.rects"], [page.shape[:2] for page in stages["atlas.depth"]])
     bad: dict[str, Bools] = {}
     width = np.full(sum(owner.size for owner in owners), np.nan)
+    if "atlas.rects" in handed:
+        differs = (np.asarray(handed["atlas.rects"]) != stages["atlas.rects"]).any(axis=1)
+        bad["atlas.rects"] = _flat([np.r_[differs, False][owner] for owner in owners])
     for name, bounds in texels(case, device).items():
         if name in handed:
             pages = [page_of(handed[name], i, bound.value.shape) for i, bound in enumerate(bounds)]

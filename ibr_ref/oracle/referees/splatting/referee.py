@@ -13,19 +13,18 @@ from ibr_ref.oracle.referees.splatting.trace import trace
 
 JUDGES = {
     "normals": (("atlas.normal",), normals.judge),
-    "rectangles": (("atlas.rects",), atlas.judge_rects),
     "atlas": (atlas.ARRAYS, atlas.judge),
     "vertex": (vertex.ARRAYS, vertex.judge),
     "raster": (raster.ARRAYS, raster.judge),
     "resolve": (("color", "depth"), image.judge_resolve),
 }
-"""For each stage, or kind of element of one, the arrays that it is compared by, and how."""
+"""For each stage the arrays that it is compared by, and how."""
 
 
 class SplattingReferee:
     """Judges ports of splatting; fulfils `ibr_ref.oracle.judgement.Referee`."""
 
-    stages: Sequence[str] = ("normals", "atlas", "vertex", "raster", "resolve")
+    stages: Sequence[str] = tuple(JUDGES)
 
     def judge_stages(
         self, case: Case, device: Device, handed: Handed, *, to_first_wrong: bool = False
@@ -42,7 +41,7 @@ class SplattingReferee:
         self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...], array: str | None = None
     ) -> list[TraceRow]:
         """The computation of one element of a stage, reference and port side by side."""
-        return trace(case, device, handed, stage, index, array)
+        return trace(case, device, handed, stage, index)
 
     def parameters(self, case: Case) -> list[Parameter]:
         """The continuous parameters that move the image."""

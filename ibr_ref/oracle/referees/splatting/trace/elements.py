@@ -7,20 +7,16 @@ from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, TraceRow
 from ibr_ref.oracle.referees.splatting.trace.pixels import pixel
 from ibr_ref.oracle.referees.splatting.trace.points import point
-from ibr_ref.oracle.referees.splatting.trace.texels import atlas_texel, normal_texel, rectangle
+from ibr_ref.oracle.referees.splatting.trace.texels import atlas_texel, normal_texel
 
 
-def trace(
-    case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...], array: str | None = None
-) -> list[TraceRow]:
-    """Rows of one element; index: (vertex,), (row, column) of a pixel, or (texel,) or (image,) as in its judgement.
+def trace(case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
+    """Rows of one element; index: (vertex,), (row, column) of a pixel, or (texel,) in the order of its judgement.
 
     Raises ValueError for a stage that the method has not.
     """
     if stage == "normals":
         return normal_texel(case, device, handed, index[0])
-    if array == "atlas.rects":
-        return [rectangle(case, handed, index[0])]
     if stage == "atlas":
         return atlas_texel(case, device, handed, index[0])
     if stage == "vertex":

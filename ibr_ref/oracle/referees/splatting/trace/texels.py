@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ibr_ref.oracle.accept.bounded import Bounded
@@ -74,7 +76,7 @@ def atlas_texel(case: Case, device: Device, handed: Handed, texel: int) -> list[
     rows = [told("page, row, column", (page, row, column))]
     for image, rect in enumerate(stages["atlas.rects"].tolist()):
         if rect[0] == page and rect[1] <= column < rect[1] + rect[3] and rect[2] <= row < rect[2] + rect[4]:
-            rows.append(rectangle(case, handed, image))
+            rows.append(_rectangle(case, handed, image))
     for name, bounds in texels(case, device).items():
         bound = bounds[page][row, column]
         parts = [bound[c] for c in range(3)] if name == "atlas.color" else [bound]
@@ -89,10 +91,11 @@ def atlas_texel(case: Case, device: Device, handed: Handed, texel: int) -> list[
     return rows
 
 
-def rectangle(case: Case, handed: Handed, image: int) -> TraceRow:
+def _rectangle(case: Case, handed: Handed, image: int) -> TraceRow:
     """Where an image lies."""
     mine, theirs = (
         None if array is None else ", ".join(map(str, np.asarray(array)[image].tolist()))
         for array in (case.frame.stages["atlas.rects"], handed.get("atlas.rects"))
     )
-    return told(f"image {image}: page, x, y, width, height", mine, theirs, array="atlas.rects", index=(image,))
+    row = told(f"image {image}: page, x, y, width, height", mine, theirs, array="atlas.rects", index=(image,))
+    return replace(row, element="image")
