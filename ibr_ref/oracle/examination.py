@@ -40,6 +40,8 @@ class Examination:
         return _first_wrong(self.judgements)
 
 
+# A port's numbers may be anything: what overflows or is no number on the way is told as an infinite bound, or as wrong.
+@np.errstate(all="ignore")
 def examine(case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = ()) -> Examination:
     """Judge a port's arrays, as `submission_from_arrays` or `load_submission` hands them on.
 
@@ -133,7 +135,7 @@ def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -
     clear = np.argwhere(judgement.wrong & ~doubtful)
     index = tuple(int(i) for i in (clear if len(clear) else np.argwhere(judgement.wrong))[0])
     array = judgement.arrays[max(int(judgement.blame[index]), 0)]
-    rows = referee(case.method).trace(case, device, handed, judgement.stage, index, array)
+    rows = referee(case.method).trace(case, device, handed, judgement.part or judgement.stage, index)
     # The head is a row of the trace: what the port is compared with is replayed, and need not be what the frame has.
     head = heading(rows, array) or _from_the_frame(case, handed, array, judgement.place(index))
     return Witness(

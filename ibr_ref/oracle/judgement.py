@@ -42,6 +42,9 @@ class Judgement:
     """(elements, k) where each of a row of elements stands in the arrays: page, row and column of an atlas. None: at its own
     index."""
 
+    part: str = ""
+    """What `Referee.trace` is asked for where a stage has several kinds of elements: an array of this kind."""
+
     def place(self, index: tuple[int, ...]) -> tuple[int, ...]:
         """An element's index in the port's arrays."""
         return index if self.places is None else tuple(self.places[index].tolist())
@@ -117,13 +120,11 @@ class Referee(Protocol):
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
         """The final colour, and depth where it is handed in, from the case alone."""
 
-    def trace(
-        self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...], array: str | None = None
-    ) -> list[TraceRow]:
+    def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
         """The computation of one element of a stage, reference and port side by side, replayed from the port's arrays.
 
-        index: in the stage's judgement. array: of that judgement, where the stage has several. The numbers of each array
-        that was handed in have a row that says so (`TraceRow.array`).
+        stage, index: of its judgement, or `Judgement.part`. The numbers of each array that was handed in have a row that
+        says so (`TraceRow.array`).
         """
 
     def parameters(self, case: Case) -> list[Parameter]:

@@ -37,9 +37,7 @@ class DisplacementReferee:
         with np.errstate(all="ignore"):
             return image.judge_image(case, device, handed)
 
-    def trace(
-        self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...], array: str | None = None
-    ) -> list[TraceRow]:
+    def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
         """The computation of one element of a stage, reference and port side by side."""
         with np.errstate(all="ignore"):
             return trace(case, device, handed, stage, index)

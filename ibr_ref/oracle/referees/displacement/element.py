@@ -111,7 +111,7 @@ class Element:
         if not self.port.has("color") or not len(color.value):
             return []
         found = np.asarray(self.port.handed["color"])[self._at]
-        legal = allows_color(color, found).all(axis=1)
+        legal: Bools = np.all(allows_color(color, found), axis=1)
         first = int(np.argmax(legal))
         bounds = [color[first, k] for k in range(3)]
         return [rows.color("colour", bounds, found, bool(legal[first]))]

@@ -60,11 +60,9 @@ class ShadowsReferee:
             self._alone, self._accepted = Inputs(case, device), None
         return self._alone
 
-    def trace(
-        self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...], array: str | None = None
-    ) -> list[TraceRow]:
-        """The computation of one element; index: that in its stage's judgement."""
-        return trace(Inputs(case, device, handed, self._of(case, device)), stage, index, array)
+    def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
+        """The computation of one element; stage: a stage or an array, index: that in its judgement."""
+        return trace(Inputs(case, device, handed, self._of(case, device)), stage, index)
 
     def parameters(self, case: Case) -> list[Parameter]:
         """What moves the image."""

@@ -127,7 +127,7 @@ def _shown(found: Fragments, border: NDArray[np.bool_], size: int) -> tuple[NDAr
     """
     pixel = found.rows * size + found.columns
     inside = np.nan_to_num(np.minimum(found.weights.min(axis=1), 0.0), nan=-np.inf, neginf=-np.inf)
-    beyond = ((found.weights < 0.0) & border[found.triangle]).any(axis=1)
+    beyond: NDArray[np.bool_] = np.any((found.weights < 0.0) & border[found.triangle], axis=1)
     order = np.lexsort((found.triangle, inside, ~beyond, pixel))
     last = np.full(size * size, -1, np.int64)
     last[pixel[order]] = np.where(beyond[order], -1, order)

@@ -37,9 +37,7 @@ class SplattingReferee:
         """The picture, and depth where it is handed in, from the case alone."""
         return image.judge_image(case, device, handed)
 
-    def trace(
-        self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...], array: str | None = None
-    ) -> list[TraceRow]:
+    def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
         """The computation of one element of a stage, reference and port side by side."""
         return trace(case, device, handed, stage, index)
 

@@ -23,17 +23,19 @@ STEPS = {
 PICTURES = ("depth", "project", "accumulate", "resolve", "image")
 
 
-def trace(given: Inputs, stage: str, index: tuple[int, ...], array: str | None = None) -> list[TraceRow]:
+def trace(given: Inputs, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
     """Rows of one element, by its index in its judgement.
 
-    A stage has elements of several kinds, by their array; without one, an index that fits more than one belongs to the first
-    that is wrong there. Raises ValueError for a stage that the method has not, and for an index that no element has.
+    A stage has elements of several kinds: its array in place of its name says which. Of a stage an index that fits more than
+    one belongs to the first that is wrong there. Raises ValueError for a stage that the method has not, and for an index
+    that no element has.
     """
     if stage in PICTURES:
         return pixel(given, stage, index)
-    if stage not in STEPS:
+    name, _, part = stage.partition(".")
+    if name not in STEPS:
         raise ValueError(f"stage: found {stage!r}, allowed: {' | '.join([*STEPS, *PICTURES])}")
-    array = array or _array(given, stage, index)
+    array = stage if part else _array(given, stage, index)
     if array == "maps.positions":
         return position(given, index)
     if array == "maps.image" or (array == "warp.image" and given.direct):

@@ -78,15 +78,15 @@ def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRo
         low, high = (maps.counts(c, k)[row, column] for c in found.covered)
         rows.append(told("share of its samples that are covered", f"from {low:.9g} to {high:.9g}"))
     texel = _texel(found, near, samples) if moved else float(np.asarray(case.frame.stages[array])[index])
-    one = [np.array([float(n)]) for n in (texel, port)]
-    return [*rows, compared_numbers("texel", *one, _legal(given, array, index), array)]
+    mine, theirs = (np.array([float(n)]) for n in (texel, port))
+    return [*rows, compared_numbers("texel", mine, theirs, _legal(given, array, index), array)]
 
 
 def _texel(found: maps.Drawn, near: NDArray[np.int64], samples: int) -> float:
     """The texel in exact arithmetic, of an object that stands where the port says."""
     inside = near[(found.found.weights[near] >= 0.0).all(axis=1)]
     if found.depth is not None:
-        return min([1.0, *found.depth.value[inside].tolist()])
+        return float(found.depth.value[inside].min(initial=1.0))
     return len(np.unique(found.pixel[inside])) / float(samples * samples)
 
 

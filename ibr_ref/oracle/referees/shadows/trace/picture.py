@@ -84,8 +84,9 @@ def _nothing(given: Inputs, arrays: Handed, index: Index) -> list[TraceRow]:
             none = [exact(0.0, device)] * count
             rows.append(number(f"nothing: {name}", none, own[i][index], array=name, index=place))
     if "accumulate.shadow" in arrays:
-        found = np.asarray(arrays["accumulate.shadow"])[index]
-        rows.append(number("nothing: accumulate.shadow", exact(0.0, device), found, array="accumulate.shadow"))
+        own = _own(given, given.handed, "project.shadow")  # whatever the pixel shows, its own shadows are summed
+        shadows = [exact([0.0 if own is None else np.nan_to_num(own[i][index])], device) for i in range(given.count)]
+        rows.append(_sum(given, shadows, arrays, index)[0])
     background = [channel[0] for channel in resolve.background(given.case.scene, given.seen)]
     return [*rows, *_colored(background, arrays, index, "background")]
 
@@ -109,8 +110,7 @@ def _shaded(given: Inputs, fragment: int, arrays: Handed, index: Index) -> list[
         rows += [*_read(given, i, place, name), _told_shadow(name, legal, port, sample)]
         fed = "project.shadow" in given.handed and port is not None and bool(np.isfinite(port))
         shadows.append(exact(np.array([port]), given.device) if fed else legal.first)
-    total = accumulated(shadows, given.case.params.accumulation == "unorm8")
-    total_row, total = _sum(given, total, arrays, index)
+    total_row, total = _sum(given, shadows, arrays, index)
     light = resolve.colors(given.case.scene, seen, np.array([fragment]), np.zeros(1, np.bool_), total)
     rows += [
         total_row,
@@ -122,8 +122,9 @@ def _shaded(given: Inputs, fragment: int, arrays: Handed, index: Index) -> list[
     return [*rows, *_colored([channel[0] for channel in light], arrays, index, "colour")]
 
 
-def _sum(given: Inputs, total: Bounded, arrays: Handed, index: Index) -> tuple[TraceRow, Bounded]:
+def _sum(given: Inputs, shadows: list[Bounded], arrays: Handed, index: Index) -> tuple[TraceRow, Bounded]:
     """The samples' sum, and what the colour is made with."""
+    total = accumulated(shadows, given.case.params.accumulation == "unorm8")
     if "accumulate.shadow" not in arrays:
         return number("sum of the samples", total[0]), total
     found = np.array([float(np.asarray(arrays["accumulate.shadow"])[index])])

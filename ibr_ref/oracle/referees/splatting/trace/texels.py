@@ -44,8 +44,8 @@ def normal_texel(case: Case, device: Device, handed: Handed, texel: int) -> list
     theirs, index = cut_out(handed["atlas.normal"], place), (int(place[0]), row + int(place[2]), column + int(place[1]))
     if mine is None or theirs is None or theirs.shape != mine.shape:
         return rows
-    codes = [array[row, column].astype(np.float64) for array in (mine, theirs)]
-    return [*rows, compared_numbers("code", *codes, not wrong[row, column], "atlas.normal", index)]
+    code, port = (array[row, column].astype(np.float64) for array in (mine, theirs))
+    return [*rows, compared_numbers("code", code, port, not wrong[row, column], "atlas.normal", index)]
 
 
 def _neighbours(depth: Bounded, valid: np.ndarray, row: int, column: int) -> list[TraceRow]:
@@ -86,8 +86,8 @@ def atlas_texel(case: Case, device: Device, handed: Handed, texel: int) -> list[
         mine = stages["atlas.normal"][page]
         theirs = page_of(handed["atlas.normal"], page, mine.shape)[row, column]
         beside = mine[row, column].any() or np.array_equal(mine[row, column], theirs)  # of an image: judged before
-        codes = mine[row, column].astype(np.float64), theirs
-        rows.append(compared_numbers("atlas.normal", *codes, beside, "atlas.normal", (page, row, column)))
+        code, place = mine[row, column].astype(np.float64), (page, row, column)
+        rows.append(compared_numbers("atlas.normal", code, theirs, beside, "atlas.normal", place))
     return rows
 
 
