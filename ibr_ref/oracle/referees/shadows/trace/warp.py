@@ -108,7 +108,10 @@ def warped_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[Trac
         lines.append(_crossing("fraction >= 0.5", half, "the second image" if half.value >= 0.0 else "the first image"))
     size = len(made.value)
     mesh = mesh_of(target, size)
-    for i in np.flatnonzero((mesh.found.rows == rest[0]) & (mesh.found.columns == rest[1])):
+    over = np.flatnonzero((mesh.found.rows == rest[0]) & (mesh.found.columns == rest[1]))
+    if not len(over):
+        lines.append(told("triangles of the grid over it", f"none: {given.nothing:g} in either image"))
+    for i in over:
         name = f"triangle {int(mesh.found.triangle[i])}"
         lines.append(told(f"{name}: covers", "certainly" if mesh.found.certain[i] else "perhaps: near an edge"))
         for n, source in enumerate(sources):
