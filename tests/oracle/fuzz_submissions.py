@@ -217,7 +217,7 @@ def main() -> int:
         if words is not None:
             complaints += 1
             print(words, flush=True)
-        if i % 1000 == 0:
+        if i % 500 == 0:
             print(f"{i:,} inputs, next --first {options.first + i}, {complaints} complaints", flush=True)
     for (method, outcome), count in sorted(found.items()):
         print(f"{method:14}{outcome:22}{count:8,}")

@@ -148,9 +148,9 @@ def test_a_long_trace_is_folded_in_words_and_on_the_page() -> None:
     assert hidden + sum("... " not in line for line in shown) == len(found.trace)
     assert any(line.endswith("differs") for line in shown)
     assert f"<details>\n  <summary>How it is computed: {len(found.trace)} steps" in page(examination)
-    one = copied(name)
+    one = copied("shadows-many")
     one["controls"][0, 0, 0, 0] = 0.3
-    assert "<details open>" in page(checked(name, one))
+    assert "<details open>" in page(checked("shadows-many", one))
 
 
 def test_what_is_computed_first_is_blamed_first() -> None:

@@ -29,9 +29,9 @@ def other_faces(port: Port) -> str | None:
 
 
 def judge_faces(port: Port) -> Judgement:
-    """The reference's faces, then those that the port has besides."""
-    compared = _compared(port)
-    wrong = np.array([mine != theirs for mine, theirs in compared], np.bool_)
+    """The faces that are missing, and those that should not be; their places are those in `faces_rows`."""
+    places = np.flatnonzero([mine != theirs for mine, theirs in _compared(port)])
+    wrong = np.ones(len(places), np.bool_)
     name = other_faces(port)
     assert name is not None
     return Judgement(
@@ -41,12 +41,13 @@ def judge_faces(port: Port) -> Judgement:
         wrong=wrong,
         undecided=np.zeros_like(wrong),
         width=np.full(wrong.shape, np.nan),
-        blame=np.where(wrong, port.names("vertex").index(name), -1).astype(np.int8),
+        blame=np.full(wrong.shape, port.names("vertex").index(name), np.int8),
+        places=places[:, np.newaxis],
     )
 
 
 def faces_rows(port: Port) -> list[TraceRow]:
-    """Every face, the reference's and the port's."""
+    """The reference's faces, then those that the port has besides."""
     name = other_faces(port) or ""
     return [
         told(f"face {i}", _named(mine), _named(theirs), array=name, index=(i,))

@@ -28,7 +28,7 @@ from ibr_ref.oracle.referees.displacement.replay import (
     shade_input,
 )
 from ibr_ref.oracle.referees.displacement.shade import slope
-from ibr_ref.oracle.referees.displacement.shown import shades_of
+from ibr_ref.oracle.referees.displacement.shown import lighted, shades_of
 
 Ints = NDArray[np.int64]
 
@@ -240,9 +240,13 @@ def _shade(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
         yield _row("gradient (g_u, g_v) of the height map", joined(gradient.along), None)
         yield from _shadow(port, constants_index=int(hits.polygon[i]), hit=hit)
     for i in range(len(shades.hit)):
-        for name, legal in (("albedo", shades.albedo[i]), ("normal", shades.normal[i])):
-            yield _row(f"a legal {name}", legal, None)
-        yield TraceRow(step="legal: lit", reference=str(bool(shades.lit[i])), port="")
+        for name, legal in (("shade.albedo", shades.albedo[i]), ("shade.normal", shades.normal[i])):
+            yield _row(f"legal: {name}" if name in port.handed else name, legal, None)
+        yield TraceRow(step="legal: shade.lit", reference=str(bool(shades.lit[i])), port="")
+    if not port.names("shade"):
+        _, color = lighted(port.constants, hits, shades)
+        for i in range(len(color.value)):
+            yield _row("colour", color[i], None)
 
 
 def _shadow(port: Port, constants_index: int, hit: list[Bounded]) -> Iterator[TraceRow]:
