@@ -21,6 +21,9 @@ def report_lines(scene: Scene, params: Params, frame: Frame, maps: Maps | None) 
     lines = []
     if maps is not None:
         lines.append(f"maps and controls: {maps.nbytes:,} bytes")
+        cut = shadows.cut_by_light(scene, params, of_maps=True)
+        if cut.cut:
+            lines.append(f"the light's frustum does not hold the caster at all nine places: {cut.words()}")
     truth = shadows.render(scene, replace(params, method="direct")).stages
     size = params.map_size
     found = [

@@ -14,7 +14,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.io.files import atomic, contents, naming
+from ibr_ref.io.files import contents, naming
+from ibr_ref.io.outputs import atomic
 from ibr_ref.scene import Mesh, checks
 from ibr_ref.shadows import automatic, maps
 from ibr_ref.shadows import controls as placement
@@ -24,6 +25,9 @@ from ibr_ref.shadows.spans import spans
 from ibr_ref.shadows.warp import Nine
 
 Array = NDArray[np.float64]
+
+GIVEN = "given"
+"""The placement of control points that were handed in, or of which a file does not say it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -45,6 +49,8 @@ class Maps:
     """k: a mask's texel is its count over k^2."""
     source: str
     """Digest of caster, axes and light, to tell maps of another scene."""
+    placement: str = GIVEN
+    """How the control points were placed: the name that `prepare` was given, or "given" for points by hand."""
 
     def __post_init__(self) -> None:
         checks.choice("content", self.content, CONTENTS)
@@ -71,6 +77,18 @@ class Maps:
     def size(self) -> int:
         """S."""
         return int(self.texels.shape[3])
+
+    @property
+    def made_with(self) -> dict[str, object]:
+        """The fields of `Params` that the maps were made with; others do not fit them."""
+        rows, columns = self.controls.shape[2:4]
+        return {
+            "map_size": self.size,
+            "content": self.content,
+            "map_samples": self.samples,
+            "rows": rows,
+            "columns": columns,
+        }
 
     @property
     def lines(self) -> tuple[list[float], list[float]]:
@@ -109,6 +127,7 @@ class Maps:
                 content=np.array(self.content),
                 samples=np.array(self.samples),
                 source=np.array(self.source),
+                placement=np.array(self.placement),
             )
 
     @classmethod
@@ -119,6 +138,7 @@ class Maps:
             _check_archive(data)
             with np.load(BytesIO(data), allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in _FIELDS}
+                placement = str(archive["placement"]) if "placement" in archive else GIVEN
             for name in ("positions", "controls"):
                 arrays[name] = checks.numbers(name, arrays[name], "numbers")
             return cls(
@@ -128,6 +148,7 @@ class Maps:
                 content=str(arrays["content"]),
                 samples=checks.whole("samples", arrays["samples"], low=1, high=maps.MOST_SAMPLES),
                 source=str(arrays["source"]),
+                placement=placement,
             )
 
 
@@ -246,6 +267,7 @@ def prepare(
         content=params.content,
         samples=params.map_samples,
         source=source_of(scene),
+        placement=controls if isinstance(controls, str) else GIVEN,
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.displacement.contract import STAGES
 from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.cases.case import Case
@@ -15,7 +16,6 @@ from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.displacement.arrays import joined
 from ibr_ref.oracle.referees.displacement.drawn_faces import judge_faces, other_faces
-from ibr_ref.oracle.referees.displacement.element import NOTHING
 from ibr_ref.oracle.referees.displacement.hits import Hits, hits_of
 from ibr_ref.oracle.referees.displacement.image import judged
 from ibr_ref.oracle.referees.displacement.raster import Fragments
@@ -118,7 +118,7 @@ def _judged(
     """Outcomes at `pixel` with these fields, and besides nothing at the pixels `bare`."""
     agrees = []
     for name, field in zip(names, fields, strict=True):
-        nothing = NOTHING[name]
+        nothing = STAGES[name].blank
         if isinstance(field, Bounded):
             shape = (len(bare), *field.value.shape[1:])
             none: Bounded | Ints = exact(np.full(shape, nothing), port.device)

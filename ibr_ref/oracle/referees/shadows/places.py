@@ -15,7 +15,7 @@ from ibr_ref.oracle.device import Device
 Floats = NDArray[np.float64]
 
 STEP = 2.0 / 3.0
-"""g: the light's samples are at the centres of cells three to an edge (shadows.md, inputs)."""
+"""g: the light's samples are at the centres of cells three to an edge (shadows/method.md, "Light samples")."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,10 +90,9 @@ class Place:
     fraction: Bounded
 
 
-def located(lines: Floats, at: Bounded) -> list[Place]:
+def located(lines: Bounded, at: Bounded) -> list[Place]:
     """The legal places on an axis with three positions, the reference's first: two where the middle line is too near."""
-    device = at.device
-    low, middle, high = (uploaded(line, device) for line in lines)
+    low, middle, high = (lines[k] for k in range(3))
     away = at - middle
     cells = [int(at.value >= middle.value)]
     if abs(away.value) <= away.error:
@@ -102,9 +101,9 @@ def located(lines: Floats, at: Bounded) -> list[Place]:
     return [Place(cell, (at - ends[cell][0]) / (ends[cell][1] - ends[cell][0])) for cell in cells]
 
 
-def fraction_in(lines: Floats, at: Bounded, cell: int) -> Bounded:
+def fraction_in(lines: Bounded, at: Bounded, cell: int) -> Bounded:
     """The fraction in a cell that the port has chosen."""
-    ends = [uploaded(line, at.device) for line in lines[cell : cell + 2]]
+    ends = [lines[cell], lines[cell + 1]]
     return (at - ends[0]) / (ends[1] - ends[0])
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import exact, uploaded
+from ibr_ref.oracle.accept.bounded import stored, uploaded
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.rows import compared_numbers, number, told
 from ibr_ref.oracle.referees.shadows import maps, places, replay_maps
@@ -53,10 +53,14 @@ def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRo
     if array == "maps.image":
         lens = given.centre_lens
         own = given.own("maps.positions", sampled=False)
+        reference = given.reference("maps.positions", sampled=False)
         line = [p[n] for p, n in zip(places.positions(case, device), index[1::-1], strict=True)]
         usable = own is not None and bool(np.isfinite(own[index[:2]]).all())
-        moved = usable and own is not None and bool((own[index[:2]] != given.positions[index[:2]]).any())
-        at = [exact(n, device) for n in own[index[:2]]] if own is not None and usable else line
+        moved = usable and own is not None and bool((own[index[:2]] != reference[index[:2]]).any())
+        if own is not None and usable:
+            at = [stored(n, device, legal) for n, legal in zip(own[index[:2]], line, strict=True)]
+        else:
+            at = line
     elif given.count > 1:
         lens = given.lenses[index[0]]
     size = int(case.params.map_size) * (1 if depth else k)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact
+from ibr_ref.oracle.accept.bounded import Bounded, converted, exact, stored
 from ibr_ref.oracle.judgement import Handed, TraceRow
 from ibr_ref.oracle.referees.rows import DIFFERS, EITHER, color, number, text, told
 from ibr_ref.oracle.referees.shadows import resolve
@@ -104,12 +104,12 @@ def _shaded(given: Inputs, fragment: int, arrays: Handed, index: Index) -> list[
         axes = [axis[0] for axis in place.axes]
         rows.append(number(f"{name}s, t, r", axes, found, array="project.coord", index=sample))
         if "project.coord" in given.handed and found is not None:
-            place = handed(found[None], place.w)
+            place = handed(found[None], place)
         legal = shadow(given.case, given.map(i), place, caster)
         port = None if own is None else float(own[i][index])
         rows += [*_read(given, i, place, name), _told_shadow(name, legal, port, sample)]
         fed = "project.shadow" in given.handed and port is not None and bool(np.isfinite(port))
-        shadows.append(exact(np.array([port]), given.device) if fed else legal.first)
+        shadows.append(stored(np.array([port]), given.device) if fed else legal.first)
     total_row, total = _sum(given, shadows, arrays, index)
     light = resolve.colors(given.case.scene, seen, np.array([fragment]), np.zeros(1, np.bool_), total)
     rows += [
@@ -132,7 +132,8 @@ def _sum(given: Inputs, shadows: list[Bounded], arrays: Handed, index: Index) ->
     if given.case.params.accumulation == "unorm8" and not bool(in_bytes(found, given.device)[0]):
         row = TraceRow(**{**vars(row), "step": "sum of the samples, a byte k / 255", "note": DIFFERS})
     fed = "accumulate.shadow" in given.handed and bool(np.isfinite(found[0]))
-    return row, exact(found, given.device) if fed else total
+    read = converted if given.case.params.accumulation == "unorm8" else stored
+    return row, read(found, given.device) if fed else total
 
 
 def _own(given: Inputs, arrays: Handed, name: str) -> Any:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.rows import compared, number, told
@@ -22,16 +22,15 @@ Spot = tuple[places.Place, places.Place]
 def place(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     """Cell and fraction on one axis; index: sample, if there are more, and axis."""
     sample, k = (index[0], index[1]) if given.count > 1 else (0, index[0])
-    line = (given.positions[0, :, 0], given.positions[:, 0, 1])[k]
-    at, device = given.offset_seen(sample)[k], given.device
+    line, at = given.lines[k], given.offset_seen(sample)[k]
     cell, fraction = given.own("warp.cell"), given.own("warp.fraction")
     legal = places.located(line, at)
     found, cells = None if cell is None else int(cell[sample, k]), [p.cell for p in legal]
     rows = [
         number("displacement of the sample", given.samples[sample].displacement[k]),
         number("the object as the sample sees it", at),
-        told("the maps' lines", ", ".join(f"{n:.9g}" for n in line)),
-        _crossing("at or above the middle line", at - uploaded(line[1], device)),
+        told("the maps' lines", ", ".join(f"{n:.9g}" for n in line.value)),
+        _crossing("at or above the middle line", at - line[1]),
         told("cell", legal[0].cell, found, legal=found is None or found in cells, array="warp.cell"),
     ]
     here = next((p.fraction for p in legal if p.cell == found), legal[0].fraction)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, converted, exact, stored, uploaded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.accept.coverage import RASTER
 from ibr_ref.oracle.cases.case import Case
@@ -17,8 +17,8 @@ from ibr_ref.oracle.referees.rows import color, compared, number, told
 from ibr_ref.oracle.referees.splatting.lighting import shades
 from ibr_ref.oracle.referees.splatting.place import Landed, landed, placed
 from ibr_ref.oracle.referees.splatting.spans import axis, border
-from ibr_ref.oracle.referees.splatting.splats import Contest, buffered, contest, single
-from ibr_ref.oracle.referees.splatting.table import Table, table
+from ibr_ref.oracle.referees.splatting.splats import Contest, buffered, contest
+from ibr_ref.oracle.referees.splatting.table import Table, fed_table
 from ibr_ref.oracle.referees.splatting.trace.points import alone, colored
 
 Bools = NDArray[np.bool_]
@@ -54,8 +54,8 @@ class Pixel:
 def pixel(case: Case, device: Device, fed: Handed, handed: Handed, at: tuple[int, int]) -> list[TraceRow]:
     """The contest for a pixel. fed: the arrays that it is replayed from; handed: those it is compared with."""
     camera = case.scene.camera
-    points = table(case, device)
-    where, _ = landed(case, device, points, fed)
+    points = fed_table(case, device, fed)
+    where = landed(case, device, points, fed)
     result = contest(where, case.params.shape, camera.width, camera.height)
     one = Pixel(case, device, fed, handed, at, points, where, result)
     splats = result.splat[result.pixel == at[0] * camera.width + at[1]]
@@ -167,11 +167,12 @@ def _picture(one: Pixel, shown: int) -> list[TraceRow]:
         colors = shades(case, device, where.world, point.codes, point.albedo)
         legal, other = colors.color[0], colors.other[0] if colors.split[0] else None
         if "vertex.color" in one.fed and own is not None and np.isfinite(own).all():
-            legal, other = exact(own, device), None
+            legal, other = stored(own.astype(np.float64), device), None
         depth = buffered(one.where.depth)[shown]
-        stored = one.own("raster.depth") if "raster.depth" in one.fed else None
-        if stored is not None and np.isfinite(stored.astype(np.float64)):
-            depth = single(device, stored.astype(np.float64))
+        buffer = one.own("raster.depth") if "raster.depth" in one.fed else None
+        if buffer is not None and np.isfinite(buffer.astype(np.float64)):
+            read = (converted if device.depth_step else stored)(buffer.astype(np.float64), device)
+            depth = read.widened(UNIT * np.abs(read.value))
     found = one.own("depth")
     if found is not None:
         rows.append(number("picture: depth", [depth], found, array="depth"))
