@@ -44,6 +44,7 @@ def table() -> dict[str, dict[str, Beside]]:
             **_always("method", "repeat", "json"),
             "msr": Beside("photographs are splatted", {"method": ("all", "splatting")}),
         },
+        "method": _always("name"),
         "reproduce": _always("paper", "out", "again"),
     }
 
@@ -57,7 +58,7 @@ def _displacement() -> dict[str, Beside]:
     walls = READ_BY["steep_threshold"]
     return {
         **_always("out", "height", "color", "invert_height", "height_scale", "eye", "target", "fov", "near", "far"),
-        **_always("light", "size", "shadow_steps", "method", "stages"),
+        **_always("no_exif", "light", "size", "shadow_steps", "method", "stages"),
         "normal_height": Beside("it holds both", {"height": ABSENT, "normal": ABSENT}),
         "normal": Beside("--normal-height holds the normals", {"normal_height": ABSENT}),
         "facade": read("facade_map"),

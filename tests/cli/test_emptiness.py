@@ -78,7 +78,10 @@ def test_why_no_face_is_drawn(run: Run, height: Path, tmp_path: Path, more: tupl
         (("--near", "50"), "in front of the near plane or behind the eye"),
         (("--eye=9,9,9", "--target=20,20,20"), "in front of the near plane or behind the eye"),
         (("--eye=9,9,9", "--target=9,-9,9"), "outside the picture"),
-        (("--eye=900,900,900", "--law", "1,0,0,1000", "--min-width", "0"), "too small to cover a pixel's centre"),
+        (
+            ("--eye=900,900,900", "--law", "1,0,0,1000", "--min-width", "0", "--size", "64x48"),
+            "too small to cover a pixel's centre",
+        ),
         (("--far", "0.5", "--shape", "ellipse"), "beyond the far plane"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else None,

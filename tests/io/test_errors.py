@@ -240,7 +240,6 @@ COMMANDS: list[list[str]] = [
     ["render", "shadows", "--caster", LONG, "--out", "o.png"],
     ["render", "shadows", "--offset", "1e300,1e300", "--out", "o.png"],
     ["render", "shadows", "--eye", "1e200,1e200,1e200", "--out", "o.png"],
-    ["render", "shadows", "--light-size", "1e308", "--out", "o.png"],
     ["export", LONG, "x"],
     ["export", "displacement-box", LONG],
     ["check", LONG, LONG],
