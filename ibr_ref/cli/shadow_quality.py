@@ -5,19 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ibr_ref.shadows.selection import iou
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from ibr_ref.io import Frame
     from ibr_ref.shadows import Maps, Params, Scene
-
-
-def iou(ours: NDArray[np.float64], theirs: NDArray[np.float64]) -> float:
-    """Intersection over union of where two arrays are >= 0.5; 1 where neither is anywhere."""
-    a, b = ours >= 0.5, theirs >= 0.5
-    union = int((a | b).sum())
-    return float((a & b).sum()) / union if union else 1.0
 
 
 def soft_difference(ours: NDArray[np.float64], theirs: NDArray[np.float64]) -> float:
@@ -36,7 +31,7 @@ def report_lines(scene: Scene, params: Params, frame: Frame, maps: Maps | None) 
 
     lines = []
     if maps is not None:
-        lines.append(f"maps and controls: {maps.nbytes:,} bytes")
+        lines += [f"maps and controls: {maps.nbytes:,} bytes", *placement_lines(params, maps)]
     truth = shadows.render(scene, replace(params, method="direct")).stages
     size = params.map_size
     found = [
@@ -53,6 +48,33 @@ def report_lines(scene: Scene, params: Params, frame: Frame, maps: Maps | None) 
         f"shadow in the picture: IoU {iou(ours, theirs):.3f}, mean difference {soft_difference(ours, theirs):.4f}"
     )
     return lines
+
+
+def placement_lines(params: Params, maps: Maps) -> list[str]:
+    """How the control points were chosen, and what was expected of them."""
+    placed = maps.placement
+    if placed is None:
+        return ["control points: simple or given ones, not compared with others"]
+    chosen = placed.chosen
+    lines = [
+        f"control points: {chosen.name}; at {placed.places} other places IoU {chosen.mean:.3f} in the mean, "
+        f"{chosen.worst:.3f} at worst",
+        "not taken: " + ", ".join(f"{other.name} {other.mean:.3f} / {other.worst:.3f}" for other in placed.others),
+    ]
+    if placed.interpolation != params.interpolation:
+        lines.append(f"they were chosen for interpolation {placed.interpolation}, not {params.interpolation}")
+    return lines
+
+
+def poor_line(maps: Maps) -> str | None:
+    """What is said even without a report: that no control points serve this shadow well."""
+    if maps.placement is None or maps.placement.good:
+        return None
+    chosen = maps.placement.chosen
+    return (
+        f"no good control points were found: with the best ({chosen.name}) maps are expected to have an IoU of "
+        f"{chosen.mean:.2f} with rendered ones; a smaller range, larger maps or --map-samples may help"
+    )
 
 
 def soft_report_line(scene: Scene, frame: Frame) -> str:

@@ -16,13 +16,15 @@ warp.* and project.* array has a leading axis of samples. Where no surface is, p
 | name | shape, dtype | what |
 |---|---|---|
 | maps.positions | (3, 3, 2) float64 | the object's offsets for the nine maps, [j, i] = (x_i, y_j) |
+| maps.depths | (3, 3) float64 | the caster's depths in them; only with interpolation="projective" |
 | maps.image | (3, 3, S, S) float64 | the maps: coverage, or window depth (1 where empty) |
 | controls | (3, 3, R, C, 2) float64 | control points (u, v) in [0, 1]^2 of the map |
 | warp.cell | (2,) int32 | cell of the positions that holds the object, x first |
 | warp.fraction | (2,) float64 | s and t in the cell |
-| warp.row_grids | (2, R, C, 2) float64 | lerp(G00, G10, s) and lerp(G01, G11, s) |
+| warp.shares | (3,) float64 | s of the upper row, s of the lower one, and t; only with interpolation="projective" |
+| warp.row_grids | (2, R, C, 2) float64 | lerp(G00, G10, s) and lerp(G01, G11, s), by the rows' own shares if there are |
 | warp.rows | (2, S, S) float64 | top and bottom |
-| warp.grid | (R, C, 2) float64 | lerp of the row grids by t |
+| warp.grid | (R, C, 2) float64 | lerp of the row grids by t, or by its share |
 | warp.image | (S, S) float64 | the map that is projected; the only array before project.* for "direct" and "grid" |
 | project.coord | (H, W, 3) float64 | (s, t, r), t downwards, r clamped to [0, 1] |
 | project.shadow | (H, W) float64 | 0 lit to 1 |
@@ -34,9 +36,15 @@ warp.* and project.* array has a leading axis of samples. Where no surface is, p
 
 - Control points are registered (`shadows.automatic`): 9 or 4 training places in each cell of the nine positions, damped
   Gauss-Newton steps, coarse to fine; "fast" takes a second for nine maps of 256 x 256, "best" about ten. The rows of a
-  registered grid may go across instead of downwards, whichever serves other places better: its border is the map's all
-  the same. Nothing folds at any place, by the Bernstein coefficients of all areas. The same bits on one machine; between
-  machines only a logarithm, in the test that a step must pass, may differ. `maps.save` keeps what was made.
+  registered grid may go across instead of downwards: its border is the map's all the same. Nothing folds at any place, by
+  the Bernstein coefficients of all areas. What is found is compared with "bounds" and "identity" ("best": with "fast" too)
+  and the nearest map, at 32 or 128 places that served neither, and taken where it is better beyond chance (`selection`);
+  `maps.placement` says what was taken and what it reached there. The same bits on one machine; between machines only a
+  logarithm, in the test that a step must pass, may differ. `maps.save` keeps what was made.
+- interpolation="projective" (not the paper's): a share s' = s w1 / ((1 - s) w0 + s w1) in place of s, w the depth of the
+  middle of the caster's bounding box along the light's view axis in the two maps; for t the w between the ends of the two
+  rows. Exact for what lies at that depth. Grids, mixes and "nearest" all take the shares. Points are registered for the
+  pace of the parameters; any pace can be drawn with them.
 - Maps of k x k samples are masks of k S x k S, snapped to 1/256 of their own pixels, and counted; masks have no depth test.
 - Warps draw triangles as everything here does: corners S G' snapped to 1/256 texel, exact integer edge functions, top-left
   rule, both orientations; attributes from the snapped corners, texture coordinates as they are. So a warp from a grid to

@@ -14,6 +14,7 @@ from ibr_ref.shadows.maps import MOST_SAMPLES
 
 CONTENTS = ("mask", "depth")
 POLICIES = ("dissolve", "nearest")
+INTERPOLATIONS = ("linear", "projective")
 ACCUMULATIONS = ("float", "unorm8")
 METHODS = ("warp", "direct", "grid")
 STORAGES = ("raw", "haar")
@@ -156,6 +157,9 @@ class Params:
     """Of depths, in units of window depth, >= 0."""
     policy: str = "dissolve"
     """`"dissolve"`: both neighbours are warped and mixed; "nearest": the nearer one is warped."""
+    interpolation: str = "linear"
+    """Pace of the control points between two maps: `"linear"`, even, the paper's; "projective": that of the caster's centre
+    as the light sees it (`shadows.pace`)."""
     light_samples: int | ArrayLike = 1
     """1: the centre; 5 or 9: with points of the rectangle around it; or (N, 3) world positions in its plane."""
     accumulation: str = "float"
@@ -185,6 +189,7 @@ class Params:
         words = {
             "content": CONTENTS,
             "policy": POLICIES,
+            "interpolation": INTERPOLATIONS,
             "accumulation": ACCUMULATIONS,
             "method": METHODS,
             "grid_storage": STORAGES,

@@ -80,13 +80,15 @@ SPLATTING = {
 
 SHADOWS = {
     "maps.positions": Meaning("the object's offsets for the nine maps, [j, i] = (x_i, y_j)"),
+    "maps.depths": Meaning('the caster\'s depths in the nine maps; only with interpolation = "projective"'),
     "maps.image": Meaning("the nine maps: coverage, or window depth", "0; of depths 1"),
     "controls": Meaning("control points (u, v) in [0, 1]^2 of the map"),
     "warp.cell": Meaning("cell of the positions that holds the object, x first"),
     "warp.fraction": Meaning("s and t in the cell"),
-    "warp.row_grids": Meaning("lerp(G00, G10, s) and lerp(G01, G11, s)"),
+    "warp.shares": Meaning('projective s of the two rows, and t; only with interpolation = "projective"'),
+    "warp.row_grids": Meaning("lerps of G00 and G10, and of G01 and G11, by s, or by the rows' shares"),
     "warp.rows": Meaning("top and bottom, each a mix of two warped maps", "0; of depths 1"),
-    "warp.grid": Meaning("lerp of the row grids by t"),
+    "warp.grid": Meaning("lerp of the row grids by t, or by its share"),
     "warp.image": Meaning("the map that is projected", "0; of depths 1"),
     "project.coord": Meaning("(s, t, r), t downwards, r clamped to [0, 1]", "0"),
     "project.shadow": Meaning("0 lit to 1", "0"),

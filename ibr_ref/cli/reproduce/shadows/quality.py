@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from ibr_ref import models, shadows
 from ibr_ref.cli.reproduce.findings import Cell, Claim, Found, Table, Within
 from ibr_ref.cli.reproduce.shadows.objects import objects, which
-from ibr_ref.cli.shadow_quality import iou
 from ibr_ref.scene import Mesh
 from ibr_ref.shadows import MapGrid, Maps, Params, Scene, SoftParams
+from ibr_ref.shadows.selection import iou
 
 Array = NDArray[np.float64]
 

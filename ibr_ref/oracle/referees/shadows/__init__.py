@@ -15,9 +15,11 @@ from ibr_ref.oracle.referees.shadows.trace import trace
 
 _JUDGES = (
     replay_maps.positions,
+    replay_maps.depths,
     replay_maps.images,
     replay_maps.controls,
     replay_maps.spots,
+    replay_maps.shares,
     replay_maps.row_grids,
     replay_maps.rows,
     replay_maps.grids,

@@ -18,6 +18,9 @@ Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 Spot = tuple[Place, Place]
 
+_PLACE = ("warp.cell", "warp.fraction", "maps.depths", "warp.shares")
+"""What says where between the maps the object is."""
+
 
 def positions(given: Inputs) -> Judgement | None:
     """Where the object stands in the nine maps."""
@@ -93,29 +96,50 @@ def spots(given: Inputs) -> Judgement | None:
     )
 
 
+def depths(given: Inputs) -> Judgement | None:
+    """The caster's depths in the nine maps."""
+    found = given.own("maps.depths", sampled=False)
+    if found is None or not given.projective:
+        return None
+    bound = given.made_depths
+    return judgement("maps", "map", ["maps.depths"], [bound.allows(found)], 2.0 * bound.error)
+
+
+def shares(given: Inputs) -> Judgement | None:
+    """The projective fractions."""
+    found, feeds = given.own("warp.shares"), ("maps.depths", "warp.cell", "warp.fraction")
+    if found is None or not given.projective:
+        return None
+    return _judged(
+        given,
+        "share",
+        "warp.shares",
+        *_compared(given, found, lambda s, p: stacked(given.made_shares(p)), feeds),
+        feeds,
+    )
+
+
 def row_grids(given: Inputs) -> Judgement | None:
     """The grids of the two rows."""
-    feeds = ("controls", "warp.cell", "warp.fraction")
-    return _points(given, "warp.row_grids", lambda s, p: stacked(given.made_row_grids(p)), feeds)
+    feeds = ("controls", *_PLACE)
+    return _points(given, "warp.row_grids", lambda s, p: stacked(given.made_row_grids(s, p)), feeds)
 
 
 def rows(given: Inputs) -> Judgement | None:
     """The two rows."""
-    feeds = ("controls", "warp.cell", "warp.fraction", "warp.row_grids")
+    feeds = ("controls", *_PLACE, "warp.row_grids")
     return _texels(given, "warp.rows", lambda s, p: stacked(given.made_rows(s, p)), feeds)
 
 
 def grids(given: Inputs) -> Judgement | None:
     """The grid of the object's place."""
-    return _points(given, "warp.grid", given.made_grid, ("warp.fraction", "warp.row_grids"))
+    return _points(given, "warp.grid", given.made_grid, (*_PLACE[1:], "warp.row_grids"))
 
 
 def warped(given: Inputs) -> Judgement | None:
     """The map of each sample; method="direct": as it is rendered."""
     if not given.direct:
-        return _texels(
-            given, "warp.image", given.made_image, ("warp.fraction", "warp.row_grids", "warp.rows", "warp.grid")
-        )
+        return _texels(given, "warp.image", given.made_image, (*_PLACE[1:], "warp.row_grids", "warp.rows", "warp.grid"))
     found = given.own("warp.image")
     if found is None:
         return None

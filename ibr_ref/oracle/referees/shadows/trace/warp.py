@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp, uploaded
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.shadows import places
@@ -32,6 +32,20 @@ def place(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     return [*rows, number("fraction", here, None if fraction is None else fraction[sample, k])]
 
 
+def share(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
+    """A projective fraction; index: sample, if there are more, and upper row, lower row, or between them."""
+    sample, (which,) = _split(given, index)
+    x, y = given.places(sample)[0]
+    corners = [[given.depths[y.cell + k, x.cell + n] for n in range(2)] for k in range(2)]
+    ends = corners[which] if which < 2 else [lerp(row[0], row[1], x.fraction) for row in corners]
+    own = given.own("warp.shares")
+    return [
+        number("fraction", x.fraction if which < 2 else y.fraction),
+        number("depths w0, w1", ends),
+        number("share", given.made_shares((x, y))[which], None if own is None else own[sample, which]),
+    ]
+
+
 def _split(given: Inputs, index: tuple[int, ...]) -> tuple[int, tuple[int, ...]]:
     return (index[0], index[1:]) if given.count > 1 else (0, index)
 
@@ -43,18 +57,18 @@ def grid_point(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceR
     own = given.own(array)
     found = None if own is None else own[(sample, *rest)]
     if array == "warp.grid":
-        ends, share, made = given.row_grids(sample, spot), spot[1].fraction, given.made_grid(sample, spot)
+        ends, mix, made = given.row_grids(sample, spot), given.shares(sample, spot)[2], given.made_grid(sample, spot)
         names = ("row grid 0", "row grid 1")
     else:
         row, *rest_of = rest
         rest = tuple(rest_of)
         x, y = spot
         ends = [given.controls[y.cell + row, x.cell + n] for n in range(2)]
-        share, made = x.fraction, given.made_row_grids(spot)[row]
+        mix, made = given.shares(sample, spot)[row], given.made_row_grids(sample, spot)[row]
         names = (f"grid of map {y.cell + row}, {x.cell}", f"grid of map {y.cell + row}, {x.cell + 1}")
     return [
         *(number(f"{name}: u, v", _point(end, rest)) for name, end in zip(names, ends, strict=True)),
-        number("fraction", share),
+        number("fraction", mix),
         number("lerp: u, v", _point(made, rest), found),
     ]
 
@@ -72,16 +86,16 @@ def warped_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[Trac
     if array == "warp.image":
         grids, rows = given.row_grids(sample, spot), given.rows(sample, spot)
         sources = [Source(row, grid) for row, grid in zip(rows, grids, strict=True)]
-        target, share, made = given.grid(sample, spot), spot[1].fraction, given.made_image(sample, spot)
+        target, mix, made = given.grid(sample, spot), given.shares(sample, spot)[2], given.made_image(sample, spot)
     else:
         row, *rest_of = rest
         rest = tuple(rest_of)
         sources = given.sources(spot, row)
-        target, share = given.row_grids(sample, spot)[row], spot[0].fraction
+        target, mix = given.row_grids(sample, spot)[row], given.shares(sample, spot)[row]
         made = given.made_rows(sample, spot)[row]
-    lines = [number("fraction", share)]
+    lines = [number("fraction", mix)]
     if given.nearest:
-        half = share - exact(0.5, given.device)
+        half = mix - exact(0.5, given.device)
         lines.append(compared("fraction >= 0.5", half, "the second image" if half.value >= 0.0 else "the first image"))
     size = len(made.value)
     mesh = mesh_of(target, size)
