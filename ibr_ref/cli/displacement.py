@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ibr_ref.cli import options
-from ibr_ref.cli.progress import progress
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from ibr_ref.scene import BasePolygon

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ibr_ref.cli.progress import progress
+from ibr_ref.progress import progress
 
 EXAMPLES = """
 Examples:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ibr_ref.cli.progress import progress
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ibr_ref.cli import options
-from ibr_ref.cli.progress import progress
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
-    from ibr_ref.cli.progress import Step
     from ibr_ref.io import Frame
+    from ibr_ref.progress import Step
     from ibr_ref.scene import Mesh
     from ibr_ref.shadows import Maps, Params, Scene, SoftParams
 
@@ -81,10 +81,6 @@ class Up(StrEnum):
 
     y = "y"
     z = "z"
-
-
-Y_UP = (".obj", ".gltf", ".glb")
-"""Formats whose meshes have y up, by definition or by custom."""
 
 
 def command(
@@ -184,7 +180,7 @@ def command(
 def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
     """The frame, and what is reported of it."""
     from ibr_ref import shadows
-    from ibr_ref.cli.shadow_quality import report_lines
+    from ibr_ref.cli.shadows_report import report_lines
 
     frame = shadows.render(scene, params, maps=maps, stages=keep or report)
     return frame, report_lines(scene, params, frame, maps) if report else []
@@ -192,7 +188,7 @@ def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: 
 
 def _poor(maps: Maps) -> str | None:
     """A line for standard error."""
-    from ibr_ref.cli.shadow_quality import poor_line
+    from ibr_ref.cli.shadows_report import poor_line
 
     return poor_line(maps)
 
@@ -200,7 +196,7 @@ def _poor(maps: Maps) -> str | None:
 def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> tuple[Frame, list[str]]:
     """The frame, and what is reported of it."""
     from ibr_ref import shadows
-    from ibr_ref.cli.shadow_quality import soft_report_line
+    from ibr_ref.cli.shadows_report import soft_report_line
 
     frame = shadows.render_soft(scene, params, stages=keep or report)
     return frame, [soft_report_line(scene, frame)] if report else []
@@ -208,18 +204,9 @@ def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> t
 
 def read_caster(path: Path | None, up: Up | None) -> Mesh:
     """The caster with z up; without a path the horse."""
-    import numpy as np
-
     from ibr_ref import io, models
-    from ibr_ref.scene import Mesh
 
-    if path is None:
-        return models.horse()
-    mesh = io.read_mesh(path)
-    if up is Up.z or (up is None and path.suffix.lower() not in Y_UP):
-        return mesh
-    x, y, z = np.asarray(mesh.vertices).T
-    return Mesh(vertices=np.stack([x, -z, y], axis=1), triangles=mesh.triangles, color=mesh.color)
+    return models.horse() if path is None else io.read_upright(path, None if up is None else up.value)
 
 
 def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | None, step: Step) -> Maps:

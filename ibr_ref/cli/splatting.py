@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ibr_ref.cli import options
-from ibr_ref.cli.progress import progress
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -152,7 +152,7 @@ def command(
             picture.save_stages(stages)
         picture.save(out)
     if report:
-        from ibr_ref.cli.view_quality import report_lines
+        from ibr_ref.cli.splatting_report import report_lines
 
         typer.echo("\n".join(report_lines(scene, params, picture, photograph)))
 

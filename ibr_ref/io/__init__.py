@@ -7,6 +7,7 @@ from ibr_ref.io.meshes import read_mesh
 from ibr_ref.io.msr import read_msr
 from ibr_ref.io.simple_texture import read_simple_texture, write_simple_texture
 from ibr_ref.io.textures import read_color, read_height, read_normal, read_normal_height
+from ibr_ref.io.upright import read_upright
 
 __all__ = [
     "Frame",
@@ -20,6 +21,7 @@ __all__ = [
     "read_normal",
     "read_normal_height",
     "read_simple_texture",
+    "read_upright",
     "write_image",
     "write_simple_texture",
 ]

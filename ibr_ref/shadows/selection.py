@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.metrics import iou
 from ibr_ref.shadows import maps
 from ibr_ref.shadows.spans import spans
 from ibr_ref.shadows.warp import Nine, locate, warp_stage
@@ -59,13 +60,6 @@ class Pace(NamedTuple):
     """(3, 3) of the caster; None: the even pace."""
     nearest: bool
     """By three warps instead of six."""
-
-
-def iou(ours: Array, theirs: Array) -> float:
-    """Intersection over union of where two arrays are >= 0.5; 1 where neither is anywhere."""
-    a, b = ours >= 0.5, theirs >= 0.5
-    union = int((a | b).sum())
-    return float((a & b).sum()) / union if union else 1.0
 
 
 class HeldOut:

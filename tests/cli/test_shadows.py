@@ -9,8 +9,8 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from ibr_ref.cli import shadow_quality
-from ibr_ref.cli.bench import shadows as bench
+from ibr_ref import metrics
+from ibr_ref.bench import shadows as bench
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
 
@@ -141,10 +141,10 @@ def test_maps_that_are_none(run: Run, cube: Path, tmp_path: Path) -> None:
 
 def test_quality_by_hand() -> None:
     ours, theirs = np.array([[1.0, 1.0, 0.0, 0.25]]), np.array([[1.0, 0.0, 0.0, 0.0]])
-    assert shadow_quality.iou(ours, theirs) == 0.5
-    assert shadow_quality.iou(0.0 * ours, 0.0 * ours) == 1.0
-    assert shadow_quality.soft_difference(ours, theirs) == pytest.approx(1.25 / 3)
-    assert shadow_quality.soft_difference(0.0 * ours, 0.0 * ours) == 0.0
+    assert metrics.iou(ours, theirs) == 0.5
+    assert metrics.iou(0.0 * ours, 0.0 * ours) == 1.0
+    assert metrics.soft_difference(ours, theirs) == pytest.approx(1.25 / 3)
+    assert metrics.soft_difference(0.0 * ours, 0.0 * ours) == 0.0
 
 
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

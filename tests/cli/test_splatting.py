@@ -9,8 +9,8 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from ibr_ref import io, models
-from ibr_ref.cli import options, view_quality
+from ibr_ref import io, metrics, models
+from ibr_ref.cli import options
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
 
@@ -144,12 +144,12 @@ def test_psnr_by_hand() -> None:
     off = truth + 0.1
     off[0, 0] = 1.0
     where = np.array([[False, True], [True, True]])
-    assert view_quality.psnr(off, truth, where) == pytest.approx(20.0)
-    assert view_quality.psnr(truth, truth, where) == np.inf
+    assert metrics.psnr(off, truth, where) == pytest.approx(20.0)
+    assert metrics.psnr(truth, truth, where) == np.inf
 
 
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ibr_ref.cli.bench import splatting
+    from ibr_ref.bench import splatting
 
     scenes = list(splatting.scenes(None))
     assert [name for name, *_ in scenes] == list(splatting.PAPER_MPPS)
@@ -165,7 +165,7 @@ def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyP
 @real_data
 def test_bench_prints_the_quality_of_the_views(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The figures that the README gives, as the issue of this method asks for them."""
-    from ibr_ref.cli.bench import splatting
+    from ibr_ref.bench import splatting
 
     monkeypatch.setattr(splatting, "scenes", lambda msr: iter(()))
     path = tmp_path / "times.json"

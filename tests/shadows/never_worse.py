@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from ibr_ref import models
+from ibr_ref.metrics import iou
 from ibr_ref.scene import AreaLight
 from ibr_ref.shadows import Params, Scene, prepare, prepare_grid, shadow_maps
-from ibr_ref.shadows.selection import iou
 from tests.shadows.casters import CASTERS
 
 LIGHTS = {

@@ -19,9 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref import models
-from ibr_ref.cli.shadow_quality import soft_difference
+from ibr_ref.metrics import iou, soft_difference
 from ibr_ref.shadows import MapGrid, Maps, Params, Scene, prepare, prepare_grid, render, shadow_maps
-from ibr_ref.shadows.selection import iou
 from tests.shadows import never_worse
 from tests.shadows.casters import cow, teapot
 

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from ibr_ref import models
+from ibr_ref.metrics import iou
 from ibr_ref.shadows import Maps, Params, Scene, automatic, controls, folds, prepare, shadow_maps
 from ibr_ref.shadows.placement import Placement
-from ibr_ref.shadows.selection import Reach, Tried, best_of, iou
+from ibr_ref.shadows.selection import Reach, Tried, best_of
 from tests.shadows import never_worse
 from tests.shadows.casters import thin_bar
 from tests.shadows.scenes import box, light, params, scene
