@@ -32,7 +32,7 @@ class Level(NamedTuple):
     """A step from coarse to fine."""
 
     size: int
-    """Texels a side; never more than the maps themselves have."""
+    """Texels a side, more where the shadow takes up little of the map; never more than the maps themselves have."""
     side: int
     """Training places along either axis of a cell of the 3 x 3 positions."""
     steps: int
@@ -54,6 +54,9 @@ RECIPES = {
     "fast": Recipe((Level(64, 2, 12),), (Level(128, 2, 8),), 32),
     "best": Recipe((Level(64, 3, 40), Level(128, 3, 40)), (Level(256, 3, 40),), 128),
 }
+
+_SMALL = 0.25
+"""Of the map's side: a shadow that is no longer is registered finer."""
 
 _MOST_POINTS = 4096
 """R C: the equations of more would take gigabytes."""
@@ -93,13 +96,13 @@ class _Work:
         self.nine, self.progress = nine, progress
         self.done = 0
         self.total = sum(level.steps for level in starts * recipe.starts + recipe.finish)
-        self.forms = folds.forms_of(nine.pace.depths)
+        self.forms, self.finer = folds.forms_of(nine.pace.depths), _finer(nine.silhouettes)
         self.tasks: dict[Level, Task] = {}
 
     def task(self, level: Level, phase: float = training.TRAINING) -> Task:
         """At the maps' own size the maps themselves are registered, with the steps in their outlines: .01 at worst."""
         nine, own = self.nine, self.nine.size
-        size = min(level.size, own)
+        size = min(level.size * self.finer, own)
         if size == own:
             images = training.smoothed(nine.silhouettes.reshape(9, own, own))
         else:
@@ -120,6 +123,18 @@ class _Work:
         if self.progress:
             self.progress(what, self.done, self.total)
         self.done += 1
+
+
+def _finer(silhouettes: Array) -> int:
+    """1, 2 or 4: so many times finer a small shadow is registered, to have as many texels as a large one."""
+    extents = [
+        np.ptp(np.flatnonzero(image.any(axis=axis))) + 1
+        for image in silhouettes.reshape(9, *silhouettes.shape[2:]) > 0.0
+        for axis in (0, 1)
+        if image.any()
+    ]
+    largest = max(extents) / silhouettes.shape[2]
+    return 1 if largest > _SMALL else 2 if largest > _SMALL / 2.0 else 4
 
 
 def _starts(nine: Nine, boxes: Array | None, rows: int, columns: int) -> list[Candidate]:

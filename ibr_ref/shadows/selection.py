@@ -26,8 +26,8 @@ LARGEST = 512
 _DRAWS, _DRAWN = 512, 24
 """How many times how many of the places are drawn."""
 
-_RARELY = 10
-"""Draws: what is behind in no more of them is as good as what never is."""
+_HARDLY, _SELDOM = 10, 64
+"""Of the draws, 2 % and an eighth."""
 
 
 class Reach(NamedTuple):
@@ -93,24 +93,26 @@ class HeldOut:
 
 
 def best_of(candidates: Sequence[Tried], rivals: Sequence[Tried], registered: int) -> int:
-    """Index of the candidate that is least often behind any rival, in the mean or at worst, at places drawn by chance.
+    """Index of the candidate to take; rivals are what it should not be behind, in the mean and at worst.
 
-    The first `registered` of them must earn it, as what they gain on others by chance they lose again elsewhere: one of
-    them is taken where it hardly ever is behind, or half as often as the best of the simpler ones, which is not behind
-    itself. Of those that hardly ever are behind the one with the highest mean is taken, the first of equals.
+    Asked is how often it would be behind any of them over places drawn by chance. The first `registered` candidates must
+    earn it, as what they gain by chance at the one place they lose at the other: of those that hardly ever are behind in
+    the mean, and seldom at worst, the one with the highest mean is taken. If there is none, what is least often behind; a
+    simple placement is not behind itself, so that another one must be so less than half as often.
     """
     drawn = np.random.RandomState(0).randint(0, len(candidates[0].found), (_DRAWS, _DRAWN))
     means = np.stack([r.found[drawn].mean(axis=1) for r in rivals]).max(axis=0)
     worsts = np.stack([r.found[drawn].min(axis=1) for r in rivals]).max(axis=0)
-    behind = [
-        int(((c.found[drawn].mean(axis=1) < means) | (c.found[drawn].min(axis=1) < worsts)).sum()) for c in candidates
-    ]
+    in_mean = [c.found[drawn].mean(axis=1) < means for c in candidates]
+    at_worst = [c.found[drawn].min(axis=1) < worsts for c in candidates]
+    behind = [int((m | w).sum()) for m, w in zip(in_mean, at_worst, strict=True)]
+    earned = [i for i in range(registered) if in_mean[i].sum() <= _HARDLY and at_worst[i].sum() <= _SELDOM]
+    if earned:
+        return max(earned, key=lambda i: (candidates[i].reach.mean, -i))
 
     def least(indices: Sequence[int]) -> int:
-        return min(indices, key=lambda i: (max(behind[i], _RARELY), -candidates[i].reach.mean, i))
+        return min(indices, key=lambda i: (behind[i], -candidates[i].reach.mean, i))
 
     simple = least(range(registered, len(candidates)))
-    if not registered:
-        return simple
-    better = least(range(registered))
-    return better if behind[better] <= max(_RARELY, behind[simple] // 2) else simple
+    better = least(range(registered)) if registered else simple
+    return better if 2 * behind[better] < behind[simple] else simple

@@ -52,7 +52,7 @@ def test_what_lies_at_the_middle_s_depth_is_where_the_shares_say() -> None:
     assert np.allclose(found, seen(given.offset), atol=1e-12)
     s, t = kept["warp.fraction"]
     even = [(1 - s) * row[0] + s * row[1] for row in corners]
-    assert np.abs((1 - t) * even[0] + t * even[1] - seen(given.offset)).max() > 0.02
+    assert np.abs((1 - t) * even[0] + t * even[1] - seen(given.offset)).max() > 0.004
 
 
 def test_shares_by_hand() -> None:
@@ -68,7 +68,7 @@ def test_the_even_pace_is_the_default_and_has_no_further_arrays() -> None:
     assert Params().interpolation == "linear"
     even, own = stages(slanted(), params()), stages(slanted(), paced())
     assert set(own) - set(even) == {"maps.depths", "warp.shares"}
-    assert np.abs(own["warp.grid"] - even["warp.grid"]).max() > 0.01
+    assert np.abs(own["warp.grid"] - even["warp.grid"]).max() > 0.003
     assert own["maps.depths"].shape == (3, 3)
 
 
