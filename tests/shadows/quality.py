@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ibr_ref import models
 from ibr_ref.metrics import iou, soft_difference
 from ibr_ref.shadows import MapGrid, Maps, Params, Scene, prepare, prepare_grid, render, shadow_maps
-from tests.shadows import never_worse
+from tests.shadows import never_worse, paces
 from tests.shadows.casters import cow, teapot
 
 OFFSETS, SOFT_OFFSETS = 64, 8
@@ -141,6 +141,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.shadows.quality", description=__doc__)
     parser.add_argument("--soft", action="store_true", help="few light samples against the area light")
     parser.add_argument("--never-worse", action="store_true", help='"best" beside simpler ways, in many settings')
+    parser.add_argument("--paces", action="store_true", help="the even pace beside the projective one")
     parser.add_argument("--interpolation", default="linear", choices=["linear", "projective"])
     parser.add_argument(
         "--results", type=Path, default=Path("never_worse.jsonl"), help="where --never-worse keeps them"
@@ -150,6 +151,9 @@ def main() -> None:
     if given.never_worse:
         first, every = map(int, given.part.split("/"))
         never_worse.run(given.results, given.interpolation, (first, every))
+        return
+    if given.paces:
+        paces.run()
         return
     if given.soft:
         titles = ("rendered to the limit", "warped to rendered", "warped to the limit")
