@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ibr_ref.cli.tables import show
 from ibr_ref.demo import displacement, shadows, splatting
 from ibr_ref.progress import progress
 
@@ -27,9 +28,9 @@ def command(
     out: Annotated[Path, typer.Option(help="Folder for the pictures; made if it is not there.")] = Path("demo"),
 ) -> None:
     """Render the papers' figures from built-in inputs: pictures, a contact sheet, and times beside the papers'."""
-    from rich.console import Console
+    from ibr_ref.io.outputs import make_folder
 
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     shown, rows = [], []
     with progress(sum(method.PICTURES for method in METHODS) + 1) as step:
         for method in METHODS:
@@ -43,10 +44,9 @@ def command(
         from ibr_ref.demo.contact_sheet import contact_sheet
 
         _save(out / "contact_sheet.png", contact_sheet(shown, columns=3))
-    console = Console()
     for method in METHODS:
-        console.print(_table(method.TITLE, method.NOTE, [row[1:] for row in rows if row[0] == method.TITLE]))
-    console.print(f"{len(shown)} pictures and contact_sheet.png are in {out}{'' if str(out).endswith('/') else '/'}")
+        show(_table(method.TITLE, method.NOTE, [row[1:] for row in rows if row[0] == method.TITLE]))
+    typer.echo(f"{len(shown)} pictures and contact_sheet.png are in {out}{'' if str(out).endswith('/') else '/'}")
 
 
 def _save(path: Path, color: Any) -> None:

@@ -46,7 +46,9 @@ def command(
 ) -> None:
     """Measure what a paper's tables and figures show, beside the published values."""
     wanted = list(METHODS) if paper is Paper.all else [paper]
-    out.mkdir(parents=True, exist_ok=True)
+    from ibr_ref.io.outputs import make_folder
+
+    make_folder(out)
     chosen = [_reproduction(METHODS[one]) for one in wanted]
     with progress(sum(len(reproduction.steps) for reproduction in chosen)) as step:
         from ibr_ref.reproduce.run import run

@@ -21,6 +21,9 @@ def report_lines(scene: Scene, params: Params, frame: Frame, maps: Maps | None) 
     lines = []
     if maps is not None:
         lines += [f"maps and controls: {maps.nbytes:,} bytes", *placement_lines(params, maps)]
+        cut = shadows.cut_by_light(scene, params, of_maps=True)
+        if cut.cut:
+            lines.append(f"the light's frustum does not hold the caster at all nine places: {cut.words()}")
     truth = shadows.render(scene, replace(params, method="direct")).stages
     size = params.map_size
     found = [
@@ -41,7 +44,7 @@ def report_lines(scene: Scene, params: Params, frame: Frame, maps: Maps | None) 
 
 def placement_lines(params: Params, maps: Maps) -> list[str]:
     """How the control points were chosen, and what was expected of them."""
-    placed = maps.placement
+    placed = maps.choice
     if placed is None:
         return ["control points: simple or given ones, not compared with others"]
     chosen = placed.chosen
@@ -57,9 +60,9 @@ def placement_lines(params: Params, maps: Maps) -> list[str]:
 
 def poor_line(maps: Maps) -> str | None:
     """What is said even without a report: that no control points serve this shadow well."""
-    if maps.placement is None or maps.placement.good:
+    if maps.choice is None or maps.choice.good:
         return None
-    chosen = maps.placement.chosen
+    chosen = maps.choice.chosen
     return (
         f"no good control points were found: with the best ({chosen.name}) maps are expected to have an IoU of "
         f"{chosen.mean:.2f} with rendered ones; a smaller range, larger maps or --map-samples may help"

@@ -10,7 +10,7 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 from pydantic import BaseModel, ConfigDict
 
-from ibr_ref.io.files import atomic
+from ibr_ref.io.outputs import atomic
 from ibr_ref.reproduce.findings import Cell, Found, Reproduction, Step
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import ibr_ref
-from ibr_ref.io.files import atomic
+from ibr_ref.io.outputs import atomic, make_folder
 from ibr_ref.reproduce.findings import Found, Reproduction, Step
 from ibr_ref.reproduce.page import write_page
 
@@ -23,15 +23,15 @@ def run(reproduction: Reproduction, out: Path, *, again: bool, step: progress.St
     sources: a step counts as done only if it is there and the package is still the same.
     """
     folder = out / f"{reproduction.number}-{reproduction.method}"
-    folder.mkdir(exist_ok=True)
+    make_folder(folder)
     results: list[tuple[Step, Found]] = []
     for part in reproduction.steps:
         step(f"{reproduction.method}: {part.title}")
         here = folder / part.name
         found = None if again else _kept(here)
         if found is None:
-            shutil.rmtree(here, ignore_errors=True)
-            here.mkdir()
+            shutil.rmtree(here.resolve(), ignore_errors=True)  # a link stays, and what it leads to is made anew
+            make_folder(here)
             found = part.run(here, step.within)
             _keep(here, found)
         results.append((part, found))

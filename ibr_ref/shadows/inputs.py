@@ -18,6 +18,11 @@ INTERPOLATIONS = ("linear", "projective")
 ACCUMULATIONS = ("float", "unorm8")
 METHODS = ("warp", "direct", "grid")
 STORAGES = ("raw", "haar")
+READ_BY: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("rows", "columns", "policy", "interpolation"), ("warp",)),
+    **dict.fromkeys(("grid_size", "grid_mix", "grid_storage"), ("grid",)),
+}
+"""Fields of `Params` that only some methods read, and these."""
 SAMPLE_COUNTS = (1, 5, 9)
 
 MOST_LIGHT_SAMPLES = 1024

@@ -47,14 +47,14 @@ class Placement:
             placement = cls(
                 asked=_word(found.pop("asked")),
                 interpolation=_word(found.pop("interpolation")),
-                places=checks.whole("placement.places", found.pop("places"), low=1, high=2**31),
+                places=checks.whole("choice.places", found.pop("places"), low=1, high=2**31),
                 chosen=_reach(found.pop("chosen")),
                 others=tuple(_reach(other) for other in found.pop("others")),
             )
         except (AttributeError, KeyError, TypeError, ValueError):
-            raise checks.reject("placement", text[:80], _ALLOWED) from None
+            raise checks.reject("choice", text[:80], _ALLOWED) from None
         if found:
-            raise checks.reject("placement", next(iter(found)), _ALLOWED)
+            raise checks.reject("choice", next(iter(found)), _ALLOWED)
         return placement
 
 
@@ -67,5 +67,5 @@ def _word(value: object) -> str:
 def _reach(value: object) -> Reach:
     if not isinstance(value, list) or len(value) != 3:
         raise TypeError
-    mean, worst = (checks.number("placement", number, low=0.0, high=1.0) for number in value[1:])
+    mean, worst = (checks.number("choice", number, low=0.0, high=1.0) for number in value[1:])
     return Reach(_word(value[0]), mean, worst)

@@ -14,7 +14,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.io.files import atomic, contents, naming
+from ibr_ref.io.files import contents, naming
+from ibr_ref.io.outputs import atomic
 from ibr_ref.pipeline.transform import transformed
 from ibr_ref.scene import Mesh, checks
 from ibr_ref.shadows import automatic, maps
@@ -28,6 +29,9 @@ from ibr_ref.shadows.vertex import place
 from ibr_ref.shadows.warp import Nine
 
 Array = NDArray[np.float64]
+
+GIVEN = "given"
+"""The placement of control points that were handed in, or of which a file does not say it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -49,8 +53,10 @@ class Maps:
     """k: a mask's texel is its count over k^2."""
     source: str
     """Digest of caster, axes and light, to tell maps of another scene."""
-    placement: Placement | None = None
-    """How the control points were chosen, and what they are expected to reach; None: they were given, or not chosen."""
+    placement: str = GIVEN
+    """How the control points were placed: the name that `prepare` was given, or "given" for points by hand."""
+    choice: Placement | None = None
+    """How automatic control points were chosen, and what they are expected to reach; None: others were given."""
 
     def __post_init__(self) -> None:
         checks.choice("content", self.content, CONTENTS)
@@ -77,6 +83,18 @@ class Maps:
     def size(self) -> int:
         """S."""
         return int(self.texels.shape[3])
+
+    @property
+    def made_with(self) -> dict[str, object]:
+        """The fields of `Params` that the maps were made with; others do not fit them."""
+        rows, columns = self.controls.shape[2:4]
+        return {
+            "map_size": self.size,
+            "content": self.content,
+            "map_samples": self.samples,
+            "rows": rows,
+            "columns": columns,
+        }
 
     @property
     def lines(self) -> tuple[list[float], list[float]]:
@@ -106,7 +124,7 @@ class Maps:
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write a NumPy archive (.npz, no pickles)."""
-        placed: Any = {} if self.placement is None else {"placement": np.array(self.placement.text)}
+        chosen: Any = {} if self.choice is None else {"choice": np.array(self.choice.text)}
         with atomic(path) as file:
             np.savez_compressed(
                 file,
@@ -116,7 +134,8 @@ class Maps:
                 content=np.array(self.content),
                 samples=np.array(self.samples),
                 source=np.array(self.source),
-                **placed,
+                placement=np.array(self.placement),
+                **chosen,
             )
 
     @classmethod
@@ -127,7 +146,8 @@ class Maps:
             _check_archive(data)
             with np.load(BytesIO(data), allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in _FIELDS}
-                placed = str(archive["placement"]) if "placement" in archive else None
+                placement = str(archive["placement"]) if "placement" in archive else GIVEN
+                choice = str(archive["choice"]) if "choice" in archive else None
             for name in ("positions", "controls"):
                 arrays[name] = checks.numbers(name, arrays[name], "numbers")
             return cls(
@@ -137,7 +157,8 @@ class Maps:
                 content=str(arrays["content"]),
                 samples=checks.whole("samples", arrays["samples"], low=1, high=maps.MOST_SAMPLES),
                 source=str(arrays["source"]),
-                placement=None if placed is None else Placement.read(placed),
+                placement=placement,
+                choice=None if choice is None else Placement.read(choice),
             )
 
 
@@ -248,7 +269,7 @@ def prepare(
     automatic placements (`shadows.automatic`); "bounds" or "identity", simple ones (`shadows.controls`); or points
     (3, 3, R, C, 2) in [0, 1]^2, as given. progress(what, done, total) is called as placement goes on. Raises ValueError
     for a light that is inside the caster at one of the nine places, and for controls of another shape, or folded.
-    `Maps.placement` says what automatic controls were chosen, and what they are expected to reach.
+    `Maps.choice` says what automatic controls were chosen, and what they are expected to reach.
     """
     params = Params() if params is None else params
     low, high = widened_range(scene, samples_of(scene, params))
@@ -256,13 +277,13 @@ def prepare(
     positions = maps.positions(low, high, np.array(scene.on_axes(centre)))
     for offset in positions.reshape(-1, 2):
         check_outside("light.position", scene, offset, centre)
-    points, placed = _points(controls, params), None
+    points, chosen = _points(controls, params), None
     view = view_of(scene, params.map_size)
     texels = np.stack([np.stack([texels_at(view, offset, params) for offset in line]) for line in positions])
     if isinstance(points, str):
         images = maps.values(texels, params.map_samples)
         silhouettes = images if params.content == "mask" else (images < 1.0).astype(np.float64)
-        points, placed = _placed(points, scene, params, view, positions, silhouettes, progress)
+        points, chosen = _placed(points, scene, params, view, positions, silhouettes, progress)
     return Maps(
         positions=positions,
         texels=texels,
@@ -270,7 +291,8 @@ def prepare(
         content=params.content,
         samples=params.map_samples,
         source=source_of(scene),
-        placement=placed,
+        placement=controls if isinstance(controls, str) else GIVEN,
+        choice=chosen,
     )
 
 

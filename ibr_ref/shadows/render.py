@@ -31,7 +31,7 @@ def render(
     """Draw receivers and caster with the caster's shadow.
 
     maps: what `prepare` made for this scene's caster, axes and light, for any offset (for method="grid" `prepare_grid`);
-    None: made here, at every call. With `stages` the frame holds every intermediate array (`shadows.__doc__` lists
+    None: made here, at every call. With `stages` the frame holds every intermediate array (`contract.STAGES` lists
     them); without, the same picture and depth sooner. Raises ValueError for inputs that only together are not allowed,
     and for maps that do not fit the scene and the parameters.
     """
@@ -88,19 +88,19 @@ def _direct(scene: Scene, params: Params, sample: Sample) -> Array:
     return values(texels_at(view, np.asarray(scene.offset), params), params.map_samples)
 
 
+def check_maps(scene: Scene, params: Params, maps: object) -> None:
+    """Raise ValueError for what are no maps of the scene and the parameters, with method="warp"."""
+    if not isinstance(maps, Maps):
+        raise checks.reject("maps", type(maps).__name__, "Maps")
+    _nine(scene, params, samples_of(scene, params), maps)
+
+
 def _nine(scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None) -> Maps:
     if maps is None:
         return prepare(scene, params)
     if not isinstance(maps, Maps):
         raise checks.reject("maps", type(maps).__name__, 'Maps, or None, with method="warp"')
-    given = {
-        "map_size": maps.size,
-        "content": maps.content,
-        "map_samples": maps.samples,
-        "rows": maps.controls.shape[2],
-        "columns": maps.controls.shape[3],
-    }
-    _check_made_for(scene, params, given, maps.source)
+    _check_made_for(scene, params, maps.made_with, maps.source)
     x, y = maps.lines
     _check_range(scene, samples, np.array([(x[0], y[0]), (x[2], y[2])]))
     return maps

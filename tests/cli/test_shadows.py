@@ -18,8 +18,10 @@ REAL = Path(__file__).parents[2].parent / "shared" / "data" / "models"
 
 
 def of_cube(cube: Path, out: Path, *more: object) -> tuple[object, ...]:
-    small = ("--map-size", 64, "--rows", 5, "--columns", 4, "--size", "96x72")
-    return ("render", "shadows", "--caster", cube, *small, "--out", out, *more)
+    method = more[more.index("--method") + 1] if "--method" in more else "warp"
+    small = ("--size", "96x72") if method == "traced" else ("--map-size", 64, "--size", "96x72")
+    grids = ("--rows", 5, "--columns", 4) if method == "warp" else ()
+    return ("render", "shadows", "--caster", cube, *small, *grids, "--out", out, *more)
 
 
 @pytest.mark.parametrize("method", ["warp", "direct"])
@@ -43,7 +45,19 @@ def test_prepared_maps_are_written_once_and_read_again(run: Run, cube: Path, tmp
     assert run(*of_cube(cube, out, "--maps", maps)) == (0, "", "")
     assert maps.read_bytes() == before
     assert out.read_bytes() == first
-    assert_one_line(run(*of_cube(cube, out, "--maps", maps, "--rows", 6)), "rows", "5", "6")
+    for option, value, words in (
+        ("--rows", 6, ("--rows", "5", "6")),
+        ("--columns", 5, ("--columns", "4", "5")),
+        ("--map-size", 128, ("--map-size", "64", "128")),
+        ("--map-samples", 2, ("--map-samples", "1", "2")),
+        ("--content", "depth", ("--content", "mask", "depth")),
+        ("--controls", "best", ("--controls", "fast", "best")),
+    ):
+        assert_one_line(run(*of_cube(cube, out, "--maps", maps, option, value)), *words, "maps.npz")
+    assert run(*of_cube(cube, out, "--maps", maps, "--controls", "fast")) == (0, "", "")
+    plain = ("render", "shadows", "--caster", cube, "--size", "96x72", "--out", out, "--maps", maps)
+    assert run(*plain) == (0, "", ""), "what is not given is the file's"
+    assert out.read_bytes() == first
 
 
 def test_the_report(run: Run, cube: Path, tmp_path: Path) -> None:

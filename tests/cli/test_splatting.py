@@ -13,6 +13,7 @@ from ibr_ref import io, metrics, models
 from ibr_ref.cli import options
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
+from tests.io.test_msr import calibration, folder_of, pose, rotation
 
 REAL = Path(__file__).parents[2].parent / "shared" / "data"
 
@@ -124,6 +125,23 @@ def test_nothing_to_draw(run: Run, tmp_path: Path) -> None:
 
 def test_photographs_need_a_view(run: Run, tmp_path: Path) -> None:
     assert_one_line(run("render", "splatting", "--msr", tmp_path, "--out", tmp_path / "out.png"), "--view")
+
+
+def test_a_view_needs_no_picture_of_its_own(run: Run, tmp_path: Path) -> None:
+    """Frame 1 was taken by camera 0 alone; the calibration has both."""
+    turned = pose(rotation(), np.array([0.5, 0.25, 0.0]))
+    folder = folder_of(tmp_path, calibration(0) + calibration(1, pose=turned), cameras=(0,), frame=1)
+    call = ("render", "splatting", "--msr", folder, "--cameras", "0", "--frame", "1", "--near", "2", "--far", "10")
+    for view in ("1", "0:1"):
+        out = tmp_path / "out.png"
+        code, said, err = run(*call, "--view", view, "--law", "2,0,0,1", "--report", "--out", out)
+        assert (code, err) == (0, "")
+        assert "photograph" not in said
+        assert imageio.imread(out).shape == (6, 8, 3)
+    code, said, err = run(*call, "--view", "0", "--law", "2,0,0,1", "--report", "--out", out)
+    assert (code, err) == (0, "")
+    assert "against the photograph" in said
+    assert_one_line(run(*call, "--view", "2", "--out", out), "no camera 2")
 
 
 @pytest.mark.parametrize("text", ["", "x", "0:", "0:1:2", "0:1:nan", "0:1:0.5:1", "-1", "1.5"])

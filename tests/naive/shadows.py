@@ -1,4 +1,4 @@
-"""shadows.md, "Stages": shadows by image warping, and the methods that the paper compares with, in plain loops.
+"""shadows/method.md: shadows by image warping, and the methods that the paper compares with, in plain loops.
 
 `stages, color, depth = render(scene, params, controls)`. The controls are an input, (3, 3, R, C, 2).
 
@@ -80,13 +80,13 @@ def plain_offset(scene: Any) -> Pair:
 
 
 def offset_seen_from(scene: Any, sample: Sample) -> Pair:
-    """The object moved the opposite way from the light sample: o - (l_i - l_centre) on the two axes (stage 5)."""
+    """The object moved the opposite way from the light sample: o - (l_i - l_centre) on the two axes (stage accumulate)."""
     x, y = plain_offset(scene)
     return x - sample.displacement[0], y - sample.displacement[1]
 
 
 def per_sample(arrays: list[Any]) -> np.ndarray:
-    """Stacked along a leading sample axis, which is left out for a single sample (stage 4)."""
+    """Stacked along a leading sample axis, which is left out for a single sample (stage project)."""
     return np.array(arrays) if len(arrays) > 1 else np.array(arrays[0])
 
 

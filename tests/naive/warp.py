@@ -1,4 +1,4 @@
-"""shadows.md, stage 3: an image warped by a mesh of control points, and the map for the object at any offset."""
+"""shadows/method.md, "Stage warp": an image warped by control points, and the map for any offset."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def mesh_triangles(rows: int, columns: int) -> list[tuple[tuple[int, int], ...]]
 
 
 def snapped(point: Point, size: int) -> tuple[int, int]:
-    """The window position in units of 1/256 pixel, ties to even (conventions.md, "Rasterization")."""
+    """The window position in units of 1/256 pixel, ties to even (conventions.md, "Triangles")."""
     return round(256.0 * (point[0] * size)), round(256.0 * (point[1] * size))
 
 

@@ -68,7 +68,7 @@ def measure(setting: Setting, interpolation: str = "linear", count: int = OFFSET
         found = [iou(shadow_maps(s, params, maps=maps)[0], t) for s, t in zip(scenes, truths, strict=True)]
         figures[name] = [float(np.mean(found)), min(found)]
         if name in ("best", "fast"):
-            figures[f"{name} took"] = maps.placement.chosen
+            figures[f"{name} took"] = maps.choice.chosen
     return figures
 
 

@@ -103,7 +103,7 @@ def test_without_a_silhouette_in_some_maps_points_are_registered_all_the_same() 
         made = prepare(aside, params(), controls=quality)
         assert not made.texels[0, 0].any()
         assert_valid(made.controls, 64)
-        placed = made.placement
+        placed = made.choice
         assert placed is not None
         assert placed.chosen.mean >= max(other.mean for other in placed.others if other.name == "identity")
 
@@ -115,17 +115,17 @@ def test_where_no_map_has_a_silhouette_points_are_simple() -> None:
         made = prepare(away, params(), controls=quality)
         assert not made.texels.any()
         assert_valid(made.controls, 64)
-        assert made.placement is not None
-        assert made.placement.chosen.mean == 1.0
+        assert made.choice is not None
+        assert made.choice.chosen.mean == 1.0
 
 
 def test_grids_of_very_many_points_are_placed_simply() -> None:
     many = params(map_size=32, rows=90, columns=50)
     made = prepare(scene(), many, controls="best")
-    assert made.placement is not None
-    tried = (made.placement.chosen, *made.placement.others)
+    assert made.choice is not None
+    tried = (made.choice.chosen, *made.choice.others)
     assert not any("registered" in reach.name for reach in tried)
-    assert made.placement.chosen.mean >= max(r.mean for r in tried if r.name in ("bounds", "identity"))
+    assert made.choice.chosen.mean >= max(r.mean for r in tried if r.name in ("bounds", "identity"))
 
 
 def test_progress_goes_on_to_its_end() -> None:

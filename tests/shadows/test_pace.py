@@ -86,8 +86,8 @@ def test_a_near_light_s_maps_are_nearer_to_the_rendered_ones(controls: str) -> N
     made = {given.interpolation: prepare(scenes[0], given, controls=controls) for given in (params(), paced())}
     found = {name: map_quality(scenes, params(interpolation=name), each) for name, each in made.items()}
     assert found["projective"][0] > found["linear"][0] + 0.005, found
-    if made["linear"].placement:
-        assert {name: each.placement.interpolation for name, each in made.items() if each.placement} == {
+    if made["linear"].choice:
+        assert {name: each.choice.interpolation for name, each in made.items() if each.choice} == {
             "linear": "linear",
             "projective": "projective",
         }

@@ -103,7 +103,7 @@ def bar() -> Scene:
 def test_an_empty_map_among_the_nine_is_no_reason_for_a_regular_grid() -> None:
     """Of a caster that is out of one map's sight; its box is known all the same."""
     aside = scene(
-        light=light(vertical_fov=11.0), caster=box(0.3), offset_range=((-0.7, 0.2), (-0.7, 0.2)), offset=(0.0, 0.0)
+        light=light(vertical_fov=11.0), caster=box(0.3), offset_range=((-0.8, 0.2), (-0.8, 0.2)), offset=(0.0, 0.0)
     )
     small = params(rows=7, columns=7)
     made = {name: prepare(aside, small, controls=name) for name in ("best", "bounds", "identity")}
@@ -117,9 +117,9 @@ def test_an_empty_map_among_the_nine_is_no_reason_for_a_regular_grid() -> None:
 
 def test_that_nothing_good_was_found_is_part_of_the_maps() -> None:
     made = prepare(bar(), Params(map_size=32), controls="fast")
-    assert made.placement is not None
-    assert not made.placement.good
-    assert made.placement.chosen.mean < 0.5
+    assert made.choice is not None
+    assert not made.choice.good
+    assert made.choice.chosen.mean < 0.5
 
 
 @pytest.mark.parametrize("reach", [0.05, 0.001])
@@ -136,15 +136,15 @@ def test_a_small_range_is_served_no_worse_than_by_simple_grids(reach: float) -> 
 
 def test_what_was_chosen_is_part_of_the_maps(tmp_path: Path) -> None:
     made = prepare(scene(), params(), controls="fast")
-    placed = made.placement
+    placed = made.choice
     assert placed is not None
     assert (placed.asked, placed.interpolation, placed.places) == ("fast", "linear", 32)
     assert {"bounds", "identity", "nearest of the nine maps"} <= {r.name for r in (placed.chosen, *placed.others)}
     assert placed.chosen.mean >= max(r.mean for r in placed.others if r.name in ("bounds", "identity")) - 1e-12
-    assert abs(quality(scene(), params(), made) - placed.chosen.mean) < 0.02
+    assert abs(quality(scene(), params(), made) - placed.chosen.mean) < 0.04
     made.save(tmp_path / "maps.npz")
-    assert Maps.load(tmp_path / "maps.npz").placement == placed
-    assert prepare(scene(), params(), controls="bounds").placement is None
+    assert Maps.load(tmp_path / "maps.npz").choice == placed
+    assert prepare(scene(), params(), controls="bounds").choice is None
 
 
 DAMAGED: list[Any] = [
@@ -158,7 +158,7 @@ DAMAGED: list[Any] = [
 
 @pytest.mark.parametrize("text", DAMAGED, ids=range(len(DAMAGED)))
 def test_a_placement_that_is_none_is_named(text: str) -> None:
-    with pytest.raises(ValueError, match="placement"):
+    with pytest.raises(ValueError, match="choice"):
         Placement.read(text)
 
 

@@ -60,8 +60,7 @@ def main() -> None:
 def pictured() -> tuple[str, shadows.Scene]:
     """A name, and the caster over a floor under a spot light."""
     name, caster = ("cow", io.read_mesh(COW)) if COW.exists() else ("horse", models.horse())
-    vertices = np.asarray(caster.vertices, float)
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    vertices, (low, high) = np.asarray(caster.vertices), caster.bounds
     size = float((high - low).max())
     caster = ibr_ref.Mesh(
         vertices=(vertices - (low + high) / 2) / size, triangles=caster.triangles, color=(0.8, 0.5, 0.3)

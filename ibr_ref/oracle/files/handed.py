@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.contract import described
 from ibr_ref.oracle.accept.bytes import read_back
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.files.npy import Accept, Header
 from ibr_ref.oracle.files.pictures import turned
 from ibr_ref.oracle.files.problem import UnusableError
-from ibr_ref.oracle.schema.stages import expected
+from ibr_ref.oracle.schema.stages import CONTRACTS, expected
 
 _KINDS = {
     "f": ("f", "float32 or float64"),
@@ -84,8 +85,12 @@ class Slots:
     """All names of a case; drawn from its frame."""
 
     def __init__(self, case: Case) -> None:
-        self.by_name = {name: Slot(name, array.shape, array.dtype) for name, array in expected(case.frame).items()}
-        self.pages = {name: len(stage) for name, stage in case.frame.stages.items() if isinstance(stage, tuple)}
+        contract = CONTRACTS[case.method]
+        self.by_name = {
+            name: Slot(name, array.shape, np.dtype(described(contract, name).dtype))
+            for name, array in expected(case.frame).items()
+        }
+        self.pages = {name: len(case.frame.stages[name]) for name, entry in contract.items() if entry.paged}
         """Of the stages of several arrays."""
 
     def named(self, name: str, file: object) -> Slot:

@@ -13,7 +13,7 @@ import numpy as np
 from jinja2 import Environment, StrictUndefined
 from numpy.typing import NDArray
 
-from ibr_ref.io.files import atomic
+from ibr_ref.io.outputs import atomic
 from ibr_ref.oracle.examination import Examination
 from ibr_ref.oracle.report.layers import blamed, layers, planes, stage_layer
 from ibr_ref.oracle.words import words

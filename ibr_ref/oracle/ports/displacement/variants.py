@@ -139,6 +139,8 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("varyings by planes", Policy(), "ieee32", _Planes),
     Variant("normal of crossed tangents", Policy(), "ieee32", _CrossedTangents),
     Variant("reflection without a vector", Policy(), "ieee32", _NoReflectedVector),
+    Variant("pow", Policy(intrinsic_power=True), "ieee32"),
+    Variant("pow, loose", Policy(intrinsic_power=True, loose=2, seed=3), "vulkan"),
     Variant("patch space from the host", Policy(), "ieee32", _HostPatchSpace),
     Variant("reciprocal division", Policy(reciprocal=True), "vulkan"),
     Variant("quotients off by 2 ULP, seed 1", Policy(loose=2, seed=1), "vulkan"),

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact
+from ibr_ref.oracle.accept.bounded import Bounded, exact, stored
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
@@ -92,14 +92,16 @@ def raster_input(port: Port) -> tuple[Fragments, tuple[str, ...]]:
     """The candidates of the port's own vertices, where it has as many as the reference."""
     faces = port.candidates.faces
     count = sum(len(each.patch.value) for each in faces)
-    if "vertex.clip" not in port.handed or len(port.handed["vertex.clip"]) != count:
+    names = port.names("vertex")
+    if not names or any(len(port.handed[name]) != count for name in names):
         return port.candidates.fragments, ()
     ends = np.cumsum([len(each.patch.value) for each in faces])[:-1]
-    names = port.names("vertex")
     for name in names:
         field = name.partition(".")[2]
         parts = np.split(np.asarray(port.handed[name], np.float64), ends)
-        changed: list[dict[str, Any]] = [{field: exact(part, port.device)} for part in parts]
+        changed: list[dict[str, Any]] = [
+            {field: stored(part, port.device, getattr(own, field))} for part, own in zip(parts, faces, strict=True)
+        ]
         faces = [replace(f, **change) for f, change in zip(faces, changed, strict=True)]
     camera = port.case.scene.camera
     with np.errstate(all="ignore"):  # a port's vertices may be anything
@@ -119,7 +121,7 @@ def march_input(port: Port, candidates: Fragments) -> tuple[Fragments, Bools]:
             polygon=polygon[pixel],
             face=face[pixel],
             certain=np.ones(len(pixel), np.bool_),
-            point=exact(point[pixel], port.device),
+            point=stored(point[pixel], port.device),
             depth=_face_depth(candidates, pixel, polygon[pixel], face[pixel], port.device),
         ), face < 0
     agrees = np.ones(len(candidates), np.bool_)
@@ -127,7 +129,8 @@ def march_input(port: Port, candidates: Fragments) -> tuple[Fragments, Bools]:
         agrees &= port.agreement(name, candidates.pixel, raster_field(candidates, name))
     fragments = candidates.take(agrees)
     if "raster.patch" in names:
-        fragments = replace(fragments, point=exact(port.floats("raster.patch")[fragments.pixel], port.device))
+        point = port.floats("raster.patch")[fragments.pixel]
+        fragments = replace(fragments, point=stored(point, port.device, fragments.point))
     if "raster.face" in names:
         return fragments, port.ints("raster.face") < 0
     return fragments, not_covered(candidates, port.pixels)
@@ -207,7 +210,7 @@ def _ports_hits(port: Port, hits: Hits) -> Hits:
         point=exact(np.zeros((count, 3)), device),
         linear_index=np.zeros(count, np.int64),
         hit_index=index[pixel],
-        hit=exact(point[pixel], device),
+        hit=stored(point[pixel], device),
         height_before=exact(np.zeros(count), device),
         steep=port.ints("march.steep")[pixel] != 0,
         depth=face_depth,
@@ -227,7 +230,7 @@ def _face_depth_of_hits(hits: Hits, pixel: Ints, polygon: Ints, device: Device) 
 
 def _at(port: Port, hits: Hits, point: Floats) -> Hits:
     """The hits at the port's own points, with the depths that belong to them."""
-    hits = replace(hits, hit=exact(point, port.device))
+    hits = replace(hits, hit=stored(point, port.device))
     if port.case.params.depth == "polygon":
         return hits
     return by_polygon(port, hits, _redepthed)
@@ -262,8 +265,8 @@ def light_input(port: Port, hits: Hits, shades: Shades) -> Shades:
         pixel = hits.pixel[index]
         return Shades(
             hit=index,
-            albedo=exact(albedo[pixel], port.device),
-            normal=exact(normal[pixel], port.device),
+            albedo=stored(albedo[pixel], port.device),
+            normal=stored(normal[pixel], port.device),
             lit=port.ints("shade.lit")[pixel] != 0,
         )
     pixel = hits.pixel[shades.hit]
@@ -274,6 +277,6 @@ def light_input(port: Port, hits: Hits, shades: Shades) -> Shades:
     for field in ("albedo", "normal"):
         if f"shade.{field}" in names:
             numbers = port.floats(f"shade.{field}")[hits.pixel[shades.hit]]
-            change: dict[str, Any] = {field: exact(numbers, port.device)}
+            change: dict[str, Any] = {field: stored(numbers, port.device)}
             shades = replace(shades, **change)
     return shades

@@ -17,7 +17,7 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 LEAST_DIFFERENCE = 2.0**-16
-"""A smaller difference of heights counts as 0 (displacement.md, stage 4)."""
+"""A smaller difference of heights counts as 0 (displacement/method.md, "Gradients")."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

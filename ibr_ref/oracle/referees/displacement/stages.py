@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.displacement.contract import STAGES
 from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.cases.case import Case
@@ -32,21 +33,6 @@ from ibr_ref.oracle.referees.displacement.shown import Shades, lighted, shades_o
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
-
-NOTHING: dict[str, float] = {
-    "raster.face": -1,
-    "raster.patch_id": -1,
-    "raster.patch": np.nan,
-    "march.linear_index": -1,
-    "march.hit_index": -1,
-    "march.hit": np.nan,
-    "march.height_before": np.nan,
-    "march.steep": 0,
-    "shade.albedo": np.nan,
-    "shade.normal": np.nan,
-    "shade.lit": 0,
-}
-"""What arrays hold where there is no fragment, or, of shade, none that was kept (displacement.md, "Stages")."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -130,7 +116,7 @@ def _judged(
     """Outcomes at `pixel` with these fields, and besides nothing at the pixels `bare`."""
     agrees = []
     for name, field in zip(names, fields, strict=True):
-        nothing = NOTHING[name]
+        nothing = STAGES[name].blank
         if isinstance(field, Bounded):
             shape = (len(bare), *field.value.shape[1:])
             none: Bounded | Ints = exact(np.full(shape, nothing), port.device)

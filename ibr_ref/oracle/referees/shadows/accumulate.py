@@ -35,7 +35,7 @@ def _in_bytes(shadows: Sequence[Bounded], device: Device) -> Bounded:
     """alpha and every sum are rounded to bytes and saturate.
 
     Where the device converts to the nearest byte (0.5) the sums are those of the conventions. Elsewhere blending may round
-    source and product too: up to one step away from the unrounded sum at each addition (shadows.md, stage 5).
+    source and product too: up to one step away from the unrounded sum at each addition (shadows/method.md, "In 8 bits").
     """
     slack = 0.5 if device.byte == 0.5 else max(device.byte, 1.0)
     weight = np.floor(255.0 / len(shadows) + 0.5) / 255.0

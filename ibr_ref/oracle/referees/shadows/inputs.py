@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp, stored, uploaded
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.referees.shadows import places
@@ -22,6 +22,9 @@ from ibr_ref.oracle.referees.shadows.transform import Lens
 from ibr_ref.oracle.referees.shadows.warp import Source, between, pair, place_of, warped
 
 Floats = NDArray[np.float64]
+
+HANDED_OVER = ("maps.positions", "maps.image")
+"""What the case hands over and a port may also make itself: with either it may go on, and for all of a stage with one."""
 
 
 @dataclass(eq=False)
@@ -97,21 +100,40 @@ class Inputs:
         return not all(np.isfinite(part).all() for part in parts)
 
     @cached_property
-    def positions(self) -> Floats:
-        """(3, 3, 2) as the case gives them."""
-        return self.reference("maps.positions", sampled=False)
+    def as_the_case(self) -> Inputs | None:
+        """The same with the nine maps that the case hands over in place of the port's own; None where it has none."""
+        others = {name: array for name, array in self.handed.items() if name not in HANDED_OVER}
+        return None if len(others) == len(self.handed) else Inputs(self.case, self.device, others, self.alone)
+
+    @cached_property
+    def lines(self) -> tuple[Bounded, Bounded]:
+        """The three x and the three y of the nine maps: the port's own, or as they are given."""
+        own = self.fed("maps.positions", sampled=False)
+        if own is not None and (np.diff(own[0, :, 0]) > 0.0).all() and (np.diff(own[:, 0, 1]) > 0.0).all():
+            positions = stored(own, self.device)
+        else:
+            positions = uploaded(self.reference("maps.positions", sampled=False), self.device)
+        return positions[0, :, 0], positions[:, 0, 1]
+
+    @cached_property
+    def given_controls(self) -> Bounded:
+        """(3, 3, R, C, 2) as they are given."""
+        return uploaded(self.reference("controls", sampled=False), self.device)
 
     @cached_property
     def controls(self) -> Bounded:
         """(3, 3, R, C, 2): the port's own, or as they are given."""
         own = self.fed("controls", sampled=False)
         if own is not None:
-            return exact(own, self.device)
-        return uploaded(self.reference("controls", sampled=False), self.device)
+            return stored(own, self.device, self.given_controls)
+        return self.given_controls
 
     @cached_property
     def images(self) -> Bounded:
-        """(3, 3, S, S) as they are given: a port renders its own to be judged for themselves."""
+        """(3, 3, S, S): the port's own, or as they are given."""
+        own = self.fed("maps.image", sampled=False)
+        if own is not None:
+            return stored(own, self.device)
         return uploaded(self.reference("maps.image", sampled=False), self.device)
 
     def offset_seen(self, sample: int) -> list[Bounded]:
@@ -125,7 +147,7 @@ class Inputs:
         if own_cell is not None and not np.isin(own_cell[sample], (0.0, 1.0)).all():
             own_cell = None
         return place_of(
-            self.positions,
+            self.lines,
             self.offset_seen(sample),
             None if own_cell is None else own_cell[sample].astype(np.int64),
             None if own_fraction is None else own_fraction[sample],
@@ -138,19 +160,19 @@ class Inputs:
 
     @cached_property
     def depths(self) -> Bounded:
-        """(3, 3) of the caster in the nine maps: the port's own, or those of the case's positions."""
+        """(3, 3) of the caster in the nine maps: the port's own, or made at the maps' lines."""
         own = self.fed("maps.depths", sampled=False)
-        return self.made_depths if own is None else exact(own, self.device)
+        return self.made_depths if own is None else stored(own, self.device)
 
     @cached_property
     def made_depths(self) -> Bounded:
-        """Those of the case's positions."""
-        return places.depths(self.case, self.centre_lens, self.device, self.positions)
+        """At the maps' lines."""
+        return places.depths(self.case, self.centre_lens, self.lines)
 
     def shares(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """Of the next map in the upper row and in the lower one, and of the lower row."""
         own = self.fed("warp.shares") if self.projective else None
-        return self.made_shares(place) if own is None else [exact(n, self.device) for n in own[sample]]
+        return self.made_shares(place) if own is None else [stored(n, self.device) for n in own[sample]]
 
     def made_shares(self, place: tuple[Place, Place]) -> list[Bounded]:
         """From the fractions, and the depths if they matter."""
@@ -169,7 +191,7 @@ class Inputs:
         """Two (R, C, 2)."""
         own = self.fed("warp.row_grids")
         if own is not None:
-            return [exact(grid, self.device) for grid in own[sample]]
+            return [stored(grid, self.device) for grid in own[sample]]
         return self.made_row_grids(sample, place)
 
     def made_row_grids(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
@@ -184,7 +206,7 @@ class Inputs:
         """(R, C, 2)."""
         own = self.fed("warp.grid")
         if own is not None:
-            return exact(own[sample], self.device)
+            return stored(own[sample], self.device)
         return self.made_grid(sample, place)
 
     def made_grid(self, sample: int, place: tuple[Place, Place]) -> Bounded:
@@ -196,7 +218,7 @@ class Inputs:
         """Two (S, S)."""
         own = self.fed("warp.rows")
         if own is not None:
-            return [exact(row, self.device) for row in own[sample]]
+            return [stored(row, self.device) for row in own[sample]]
         return self.made_rows(sample, place)
 
     def made_rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
@@ -225,7 +247,9 @@ class Inputs:
         own = self.own("warp.image")
         if own is not None:
             bad = ~np.isfinite(own[sample])
-            return Map.of(exact(np.where(bad, self.reference("warp.image")[sample], own[sample]), self.device), bad)
+            texels = np.where(bad, self.reference("warp.image")[sample], own[sample])
+            # A map that is rendered was cleared to 1; a warped one holds mixes, rounded to 1 or not.
+            return Map.of(stored(texels, self.device, exact(1.0, self.device) if self.direct else None), bad)
         if self.direct:
             at = places.offset(self.case, self.device)
             return rendered(self.case, self.lenses[sample], at, self.reference("warp.image")[sample])

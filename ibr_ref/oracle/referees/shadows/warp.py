@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp
+from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp, stored
 from ibr_ref.oracle.accept.coverage import Fragments, fragments
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.referees.shadows.places import Place, fraction_in, located
@@ -31,19 +31,19 @@ def between(first: Bounded, second: Bounded, share: Bounded) -> Bounded:
 
 
 def place_of(
-    positions: Floats, at: Sequence[Bounded], cell: NDArray[np.int64] | None, fraction: Floats | None
+    lines: Sequence[Bounded], at: Sequence[Bounded], cell: NDArray[np.int64] | None, fraction: Floats | None
 ) -> list[tuple[Place, Place]]:
-    """Where along x and y an object may be among positions (3, 3, 2), the likeliest first.
+    """Where along x and y an object may be among the lines (3,) of the maps, the likeliest first.
 
     cell, fraction (2,): a port's own.
     """
     axes: list[list[Place]] = []
-    for k, line in enumerate((positions[0, :, 0], positions[:, 0, 1])):
+    for k, line in enumerate(lines):
         found = located(line, at[k])
         if cell is not None:
             found = [Place(int(cell[k]), fraction_in(line, at[k], int(cell[k])))]
         if fraction is not None:
-            found = [Place(place.cell, exact(fraction[k], at[k].device)) for place in found]
+            found = [Place(place.cell, stored(fraction[k], at[k].device, place.fraction)) for place in found]
         axes.append(found)
     return [(x, y) for x in axes[0] for y in axes[1]]
 

@@ -24,7 +24,7 @@ Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 
 JUMP = 0.05
-"""Neighbours farther apart than this share of the depth lie on different surfaces (the method's page, stage 1)."""
+"""Neighbours farther apart than this share of the depth lie on different surfaces (splatting/method.md, "Stage normals")."""
 
 CHOICES = (1, -1, 0)
 """Along an axis: the neighbour right or below, left or above, or none."""
@@ -110,7 +110,7 @@ def steps(surface: Surface, axis: int) -> Steps:
         maybe[side] = there & (margin >= -off), there & (margin >= off)
     after, before = sizes[1], sizes[-1]
     first, off = after.value <= before.value, after.error + before.error
-    close = (np.abs(after.value - before.value) <= off) & (off > 0.0)
+    close = (np.abs(after.value - before.value) <= off) & (off > 0.0) & ~_same(surface.depth.value, surface.valid, axis)
     (after_maybe, after_sure), (before_maybe, before_sure) = maybe[1], maybe[-1]
     legal = {
         1: after_maybe & (~before_sure | first | close),
@@ -119,6 +119,12 @@ def steps(surface: Surface, axis: int) -> Steps:
     }
     takes_after = usable[1] & (~usable[-1] | first)
     return Steps(legal, np.where(takes_after, 1, np.where(usable[-1], -1, 0)))
+
+
+def _same(depth: NDArray[np.float64], valid: Bools, axis: int) -> Bools:
+    """Both neighbours have one depth: their distances are made of the same numbers, and tie on every device."""
+    after, before = (_shifted(np.where(valid, depth, np.nan), axis, side, np.nan) for side in (1, -1))
+    return np.asarray(after == before)
 
 
 def _difference(a: Bounded, b: Bounded) -> Bounded:

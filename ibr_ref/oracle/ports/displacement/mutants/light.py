@@ -23,6 +23,14 @@ class _Ambient(Port):
         return super().ambient() * 1.02
 
 
+@LIGHT.add("ambient as a byte", small=True)
+class _AmbientByte(Port):
+    """Ambient is rounded to a multiple of 1/255."""
+
+    def ambient(self) -> Floats:
+        return np.rint(super().ambient() * 255.0) / 255.0
+
+
 @LIGHT.add("diffuse off by 1 %", small=True)
 class _Diffuse(Port):
     """Diffuse light is 0.99 times what it should be."""
@@ -194,6 +202,14 @@ class _LastSampleMissing(Port):
 
     def shadow_samples(self) -> range:
         return range(1, self.params.shadow_steps)
+
+
+@LIGHT.add("one shadow sample more", small=True)
+class _OneSampleMore(Port):
+    """j to S + 1: the last sample lies at the end of the stretch."""
+
+    def shadow_samples(self) -> range:
+        return range(1, self.params.shadow_steps + 2)
 
 
 @LIGHT.add("first shadow sample left out", small=True)

@@ -59,6 +59,14 @@ class _AnyDirection(Port):
         return np.asarray(way[2] != 0.0)
 
 
+@MARCH.add("grazing rays discarded", small=True)
+class _Grazing(Port):
+    """v_h > 0.1, against a division by numbers near zero."""
+
+    def goes_up(self, way: Vector) -> Bools:
+        return np.asarray(way[2] > 0.1) if self.params.interval == "paper" else super().goes_up(way)
+
+
 @MARCH.add("search from behind the eye")
 class _BehindEye(Port):
     """In the volume the ray starts at the wall, even where the eye comes first."""

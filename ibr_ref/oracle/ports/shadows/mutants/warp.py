@@ -13,6 +13,17 @@ from ibr_ref.oracle.ports.shadows.sampler import Sampler
 
 fault = Catalogue("warp")
 
+ANY_ORDER = "the sum of all samples is the same in any order"
+
+
+@fault("listed-by-distance", "samples that are listed are taken from the light's centre outwards", hidden=ANY_ORDER)
+class _ByDistance(Port):
+    def sample_places(self) -> list[Floats]:
+        places = super().sample_places()
+        if not isinstance(self.params.light_samples, np.ndarray):
+            return places
+        return sorted(places, key=lambda place: float(np.sum((place - self.centre) ** 2)))
+
 
 @fault("s-for-t", "the rows are mixed by s")
 class _RowsMixedByS(Port):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.accept.bounded import exact, uploaded
+from ibr_ref.oracle.accept.bounded import stored, uploaded
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.shadows import maps, places, replay_maps
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
@@ -35,7 +35,7 @@ def depth(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     return [
         told("the caster's box, from", ", ".join(f"{n:.9g}" for n in low)),
         told("to", ", ".join(f"{n:.9g}" for n in high)),
-        told("offset of the map", ", ".join(f"{n:.9g}" for n in given.positions[index])),
+        number("offset of the map", [line[n] for line, n in zip(given.lines, index[::-1], strict=True)]),
         number(
             "depth of its middle along the view axis", given.made_depths[index], None if own is None else own[index]
         ),
@@ -66,7 +66,7 @@ def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRo
         lens = given.centre_lens
         own = given.own("maps.positions", sampled=False)
         line = [p[n] for p, n in zip(places.positions(case, device), index[1::-1], strict=True)]
-        at = line if own is None else [exact(n, device) for n in own[index[:2]]]
+        at = line if own is None else [stored(n, device, legal) for n, legal in zip(own[index[:2]], line, strict=True)]
     elif given.count > 1:
         lens = given.lenses[index[0]]
     size = int(case.params.map_size) * (1 if depth else k)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact
+from ibr_ref.oracle.accept.bounded import Bounded, converted, stored
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
@@ -66,17 +66,18 @@ def _shaded(given: Inputs, fragment: int, arrays: Handed, index: tuple[int, ...]
             number(f"{name}s, t, r", [axis[0] for axis in place.axes], None if coords is None else coords[i][index])
         )
         if "project.coord" in given.handed and coords is not None:
-            place = handed(coords[i][index][None], place.w)
+            place = handed(coords[i][index][None], place)
         legal = shadow(given.case, given.map(i), place, caster)
         port = None if own is None else float(own[i][index])
         rows += [*_read(given, i, place, name), _told_shadow(name, legal, port)]
         fed = "project.shadow" in given.handed and port is not None
-        shadows.append(exact(np.array([port]), given.device) if fed else legal.first)
+        shadows.append(stored(np.array([port]), given.device) if fed else legal.first)
     total = accumulated(shadows, given.case.params.accumulation == "unorm8")
     found = None if "accumulate.shadow" not in arrays else float(np.asarray(arrays["accumulate.shadow"])[index])
     rows.append(number("sum of the samples", total[0], found))
     if "accumulate.shadow" in given.handed and found is not None:
-        total = exact(np.array([found]), given.device)
+        read = converted if given.case.params.accumulation == "unorm8" else stored
+        total = read(np.array([found]), given.device)
     color = resolve.colors(given.case.scene, seen, np.array([fragment]), np.zeros(1, np.bool_), total)
     rows.append(number("surface colour", [channel[fragment] for channel in seen.color]))
     rows.append(number("max(0, n . l)", seen.cosine[fragment]))

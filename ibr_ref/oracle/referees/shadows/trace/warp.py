@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.shadows import places
@@ -16,16 +16,15 @@ from ibr_ref.oracle.referees.shadows.warp import Source, mesh_of
 def place(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     """Cell and fraction on one axis; index: sample, if there are more, and axis."""
     sample, k = (index[0], index[1]) if given.count > 1 else (0, index[0])
-    line = (given.positions[0, :, 0], given.positions[:, 0, 1])[k]
-    at, device = given.offset_seen(sample)[k], given.device
+    line, at = given.lines[k], given.offset_seen(sample)[k]
     cell, fraction = given.own("warp.cell"), given.own("warp.fraction")
     legal = places.located(line, at)
     found = None if cell is None else int(cell[sample, k])
     rows = [
         number("displacement of the sample", given.samples[sample].displacement[k]),
         number("the object as the sample sees it", at),
-        told("the maps' lines", ", ".join(f"{n:.9g}" for n in line)),
-        compared("at or above the middle line", at - uploaded(line[1], device)),
+        told("the maps' lines", ", ".join(f"{n:.9g}" for n in line.value)),
+        compared("at or above the middle line", at - line[1]),
         told("cell", legal[0].cell, found, legal=found is None or found in [p.cell for p in legal]),
     ]
     here = legal[0].fraction if found not in (0, 1) else places.fraction_in(line, at, found)

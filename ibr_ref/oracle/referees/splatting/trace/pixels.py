@@ -11,7 +11,7 @@ from ibr_ref.oracle.judgement import Handed, TraceRow
 from ibr_ref.oracle.referees.splatting.place import Landed, landed, placed
 from ibr_ref.oracle.referees.splatting.spans import axis, border
 from ibr_ref.oracle.referees.splatting.splats import Contest, buffered, contest
-from ibr_ref.oracle.referees.splatting.table import table
+from ibr_ref.oracle.referees.splatting.table import fed_table
 from ibr_ref.oracle.referees.splatting.trace.points import alone, colored
 from ibr_ref.oracle.referees.splatting.trace.rows import DIFFERS, compared, number, text, told
 
@@ -22,8 +22,8 @@ MOST = 8
 def pixel(case: Case, device: Device, fed: Handed, handed: Handed, at: tuple[int, int]) -> list[TraceRow]:
     """The contest for a pixel (row, column). fed: the arrays that it is replayed from; handed: those it is compared with."""
     camera = case.scene.camera
-    points = table(case, device)
-    where, _ = landed(case, device, points, fed)
+    points = fed_table(case, device, fed)
+    where = landed(case, device, points, fed)
     result = contest(where, case.params.shape, camera.width, camera.height)
     splats = result.splat[result.pixel == at[0] * camera.width + at[1]]
     splats = splats[np.argsort(where.depth.value[splats], kind="stable")]

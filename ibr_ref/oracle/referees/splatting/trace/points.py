@@ -14,6 +14,7 @@ from ibr_ref.oracle.referees.splatting.lighting import lit_terms, shades
 from ibr_ref.oracle.referees.splatting.place import Placed, placed
 from ibr_ref.oracle.referees.splatting.table import Table, table
 from ibr_ref.oracle.referees.splatting.trace.rows import compared, number, text, told
+from ibr_ref.oracle.referees.splatting.vertex import wrong_color
 
 
 def point(case: Case, device: Device, handed: Handed, vertex: int) -> list[TraceRow]:
@@ -46,6 +47,7 @@ def alone(points: Table, vertex: int) -> Table:
         depth=points.depth[one],
         albedo=points.albedo[one],
         codes=points.codes[one],
+        given=points.given[one],
         usable=points.usable[one],
     )
 
@@ -84,7 +86,12 @@ def _kept(where: Placed) -> list[TraceRow]:
 
 
 def colored(case: Case, device: Device, points: Table, where: Placed, port: Any = None) -> list[TraceRow]:
-    """The light on the only point of a table."""
+    """The light on the only point of a table: with the normal that the port's colour agrees with, if one does."""
+    for lighting in points.lightings if port is not None else ():
+        legal = shades(case, device, where.world, lighting.codes, points.albedo)
+        if not wrong_color(legal, np.asarray(port, np.float64)[None]).any():
+            points = lighting
+            break
     rows = [number("fetch: stored colour", [points.albedo[0, c] for c in range(3)])]
     if case.scene.light is not None:
         terms = lit_terms(case, device, where.world, points.codes)
