@@ -26,6 +26,9 @@ _KINDS = {
 }
 """By the kind of the reference's array: the kinds that are allowed, and in words. Integers are never floats."""
 
+MOST_FACES = 64
+"""That a port may hand in for a polygon, which has six."""
+
 
 @dataclass(frozen=True)
 class Slot:
@@ -35,10 +38,14 @@ class Slot:
     shape: tuple[int, ...]
     dtype: np.dtype[Any]
     """The reference's."""
+    most_faces: int = 0
+    """Of an array with four rows a face: how many it may have, right or not. Too many or too few are the port's fault."""
 
     @property
     def shapes(self) -> list[tuple[int, ...]]:
         """Allowed shapes; the final colour may come with an alpha, which is not looked at."""
+        if self.most_faces:
+            return [(4 * faces, *self.shape[1:]) for faces in range(self.most_faces + 1)]
         return [self.shape, (*self.shape[:2], 4)] if self.name == "color" else [self.shape]
 
     def check(self, header: Header, file: object) -> None:
@@ -53,7 +60,8 @@ class Slot:
             raise UnusableError(file, f"{header.dtype}", words)
         if header.shape not in self.shapes:
             remark = turned(header.shape, self.shape)
-            raise UnusableError(file, f"the shape {header.shape}{remark}", " or ".join(map(str, self.shapes)))
+            allowed = f"four rows a face, {self.shape}" if self.most_faces else " or ".join(map(str, self.shapes))
+            raise UnusableError(file, f"the shape {header.shape}{remark}", allowed)
 
     def accept(self, file: object) -> Accept:
         """The check of a file's header."""
@@ -86,8 +94,14 @@ class Slots:
 
     def __init__(self, case: Case) -> None:
         contract = CONTRACTS[case.method]
+        corners = MOST_FACES * len(case.scene.polygons) if case.method == "displacement" else 0
         self.by_name = {
-            name: Slot(name, array.shape, np.dtype(described(contract, name).dtype))
+            name: Slot(
+                name,
+                array.shape,
+                np.dtype(described(contract, name).dtype),
+                corners if name.startswith("vertex.") else 0,
+            )
             for name, array in expected(case.frame).items()
         }
         self.pages = {name: len(case.frame.stages[name]) for name, entry in contract.items() if entry.paged}

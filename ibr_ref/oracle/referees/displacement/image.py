@@ -135,11 +135,11 @@ def judge_image(case: Case, device: Device, handed: Handed) -> Judgement:
     height, width = case.scene.camera.height, case.scene.camera.width
     pixels = height * width
     color = np.asarray(handed["color"]).reshape(pixels, 3)
-    names = ("color", "depth") if "depth" in handed else ("color",)
+    names = ("depth", "color") if "depth" in handed else ("color",)
     agrees = [np.asarray(allows_color(accepted.color, color[accepted.pixel]).all(axis=1))]
     if "depth" in handed:
         depth = np.asarray(handed["depth"], np.float64).reshape(pixels)
-        agrees.append(accepted.depth.allows(depth[accepted.pixel]))
+        agrees.insert(0, accepted.depth.allows(depth[accepted.pixel]))
     right, blame = judged(accepted.pixel, agrees, pixels)
     right[accepted.lost] = True
     blame[right] = -1

@@ -29,12 +29,13 @@ Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
 ARRAYS = {
-    "vertex": ("vertex.clip", "vertex.patch"),
+    "vertex": ("vertex.patch", "vertex.clip"),
     "raster": ("raster.face", "raster.patch_id", "raster.patch"),
     "march": ("march.linear_index", "march.hit_index", "march.hit", "march.height_before", "march.steep"),
     "shade": ("shade.albedo", "shade.normal", "shade.lit"),
 }
-"""What is compared in each stage; besides, in shade the colours of what is shown, and in resolve depth and background."""
+"""What is compared in each stage, in order of computation; besides, in shade the colours of what is shown, and in resolve
+depth and background."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -15,6 +15,7 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.displacement.arrays import joined
+from ibr_ref.oracle.referees.displacement.drawn_faces import judge_faces, other_faces
 from ibr_ref.oracle.referees.displacement.hits import Hits, hits_of
 from ibr_ref.oracle.referees.displacement.image import judged
 from ibr_ref.oracle.referees.displacement.raster import Fragments
@@ -92,6 +93,8 @@ def _picture(port: Port, stage: str, replayed: tuple[str, ...], verdict: Verdict
 
 
 def _vertex(port: Port) -> Judgement:
+    if other_faces(port):
+        return judge_faces(port)
     faces = port.candidates.faces
     legal = {"vertex.clip": joined([f.clip for f in faces]), "vertex.patch": joined([f.patch for f in faces])}
     names = port.names("vertex")
@@ -99,8 +102,7 @@ def _vertex(port: Port) -> Judgement:
     wrong, blame = np.zeros(count, np.bool_), np.full(count, -1, np.int8)
     for i, name in enumerate(names):
         found = np.asarray(port.handed[name], np.float64)
-        same = found.shape == legal[name].value.shape
-        off = ~legal[name].allows(found).all(axis=1) if same else np.ones(count, np.bool_)
+        off = ~legal[name].allows(found).all(axis=1)
         blame[off & ~wrong] = i
         wrong |= off
     width = 2.0 * np.max([np.broadcast_to(b.error, b.value.shape).max(axis=1) for b in legal.values()], axis=0)
@@ -218,7 +220,7 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: Bounded, clean: bool, los
     Which polygon wins hangs on fragments that the port did not hand in. They are the reference's only where the port's own
     stages are right: `clean`. The colours of what is shown were judged with shade; they count here where it was not.
     """
-    names = tuple(name for name in ("color", "depth") if name in port.handed)
+    names = tuple(name for name in ("depth", "color") if name in port.handed)
     nothing = _discarded(port, hits)
     nothing[hits.pixel[hits.depth.high >= 1.0]] = True
     bare = np.flatnonzero(nothing & port.candidates.empty if clean else nothing)
@@ -228,6 +230,9 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: Bounded, clean: bool, los
     entry = lit[may_win[lit]] if "color" in names and not port.names("shade") else np.flatnonzero(may_win)
     pixel = np.concatenate([hits.pixel[entry], bare])
     agrees = []
+    if "depth" in names:
+        depth = joined([hits.depth[entry], exact(np.ones(len(bare)), port.device)]).widened(port.device.depth_step)
+        agrees.append(port.agreement("depth", pixel, depth))
     if "color" in names:
         found = np.asarray(port.handed["color"]).reshape(port.pixels, 3)
         background = uploaded(np.broadcast_to(np.asarray(port.case.scene.background), (len(bare), 3)), port.device)
@@ -235,9 +240,6 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: Bounded, clean: bool, los
         if not port.names("shade"):
             judged_before = np.asarray(allows_color(color[may_win[lit]], found[hits.pixel[entry]]).all(axis=1))
         agrees.append(np.concatenate([judged_before, allows_color(background, found[bare]).all(axis=1)]))
-    if "depth" in names:
-        depth = joined([hits.depth[entry], exact(np.ones(len(bare)), port.device)]).widened(port.device.depth_step)
-        agrees.append(port.agreement("depth", pixel, depth))
     right, blame = judged(pixel, agrees, port.pixels)
     known = np.zeros(port.pixels, np.bool_)
     known[hits.pixel] = True

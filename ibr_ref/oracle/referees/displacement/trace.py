@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +13,16 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, TraceRow
 from ibr_ref.oracle.referees.displacement.arrays import joined
-from ibr_ref.oracle.referees.displacement.hits import Hits, hits_of
+from ibr_ref.oracle.referees.displacement.drawn_faces import FACES, faces_rows, other_faces
+from ibr_ref.oracle.referees.displacement.element import Element
+from ibr_ref.oracle.referees.displacement.hits import Hits, hits_of, window_depth
 from ibr_ref.oracle.referees.displacement.light import lit_of, shadow_gap, stretch
-from ibr_ref.oracle.referees.displacement.march import Search, compared, domain, search_of, steep_margin
-from ibr_ref.oracle.referees.displacement.march import outcomes_of as march_outcomes
+from ibr_ref.oracle.referees.displacement.march import Search, compared, domain, search_of
 from ibr_ref.oracle.referees.displacement.raster import Fragments
 from ibr_ref.oracle.referees.displacement.rays import towards
 from ibr_ref.oracle.referees.displacement.replay import (
     ARRAYS,
     Port,
-    light_input,
     march_input,
     raster_input,
     shade_input,
@@ -31,33 +32,37 @@ from ibr_ref.oracle.referees.displacement.shown import lighted, shades_of
 
 Ints = NDArray[np.int64]
 
-FACES = ("base", "u=0", "u=1", "v=0", "v=1", "top")
-
 
 def trace(case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
     """The rows of one element of a stage; "image" and "resolve" follow the pixel through all stages."""
+    if stage == "image":  # from the case alone
+        handed = {name: handed[name] for name in ("color", "depth") if name in handed}
     port = Port(case=case, device=device, handed=handed)
     if stage == "vertex":
-        return list(_vertex(port, int(index[0])))
+        return faces_rows(port) if other_faces(port) else list(_vertex(port, int(index[0])))
     row, column = index
     pixel = int(row) * case.scene.camera.width + int(column)
     candidates, _ = raster_input(port)
     candidates = candidates.take(candidates.pixel == pixel)
-    rows = list(_raster(port, pixel, candidates))
+    element = Element(port, pixel)
+    rows = [*_raster(port, pixel, candidates), *element.raster(candidates)]
     if stage == "raster":
         return rows
     fragments, _ = march_input(port, candidates)
     fragments = fragments.take(fragments.pixel == pixel)
+    hits, _ = hits_of(port.constants, case.params, fragments)
     march = [row for i in range(len(fragments)) for row in _march(port, pixel, fragments.take(slice(i, i + 1)))]
+    march += [*_outcomes(port, pixel, hits), *element.march(hits)]
     if stage == "march":
         return march
-    hits, _ = hits_of(port.constants, case.params, fragments)
     hits = shade_input(port, hits)
     hits = hits.take(hits.pixel == pixel)
     shade = list(_shade(port, pixel, hits))
+    looks = element.shade(hits)
     if stage == "shade":
-        return shade
-    return rows + march + shade + list(_resolve(port, pixel, hits))
+        return shade + looks
+    resolve = list(_resolve(port, pixel, hits))
+    return rows + march + shade + looks + resolve + (element.image() if stage == "image" else element.resolve(hits))
 
 
 def _number(value: float) -> str:
@@ -94,7 +99,8 @@ def _vertex(port: Port, index: int) -> Iterator[TraceRow]:
     ):
         found = np.asarray(port.handed[name], np.float64) if name in port.handed else None
         usable = found is not None and index < len(found)
-        yield _row(f"{name}[{index}]", legal[index], found[index] if usable and found is not None else None)
+        own = found[index] if usable and found is not None else None
+        yield replace(_row(f"{name}[{index}]", legal[index], own), array=name)
 
 
 def _raster(port: Port, pixel: int, candidates: Fragments) -> Iterator[TraceRow]:
@@ -121,7 +127,6 @@ def _march(port: Port, pixel: int, fragment: Fragments) -> Iterator[TraceRow]:
     search = search_of(constants, params, [fragment.point[:, k] for k in range(3)])
     yield _row("ray at t = 0", joined(search.rays.start), None)
     yield _row("ray at t = 1", joined(search.rays.end), None)
-    outcomes, _ = march_outcomes(search)
     linear = int(port.ints("march.linear_index")[pixel]) if port.has("march.linear_index") else None
     hit = int(port.ints("march.hit_index")[pixel]) if port.has("march.hit_index") else None
     stop = _reference_stop(search)
@@ -141,17 +146,39 @@ def _march(port: Port, pixel: int, fragment: Fragments) -> Iterator[TraceRow]:
             yield row
             inside = said if said is not None else row.reference.endswith("yes")
             low, high = (low, middle) if inside else (middle, high)
-    for i in range(len(outcomes.hit_index)):
-        margin = steep_margin(search, outcomes.take(np.array([i])))
+        yield from _near_plane(search, high)
+
+
+def _outcomes(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
+    """What the marches may come to; a hit before the near plane is discarded."""
+    threshold = port.case.params.steep_threshold
+    for i in range(len(hits)):
+        margin = float(hits.hit.value[i, 2] - hits.height_before.value[i] - threshold)
+        kept = hits.hit_index[i] >= 0
         yield TraceRow(
             step="a legal outcome: i, k, (u, v, h), a, steep",
-            reference=f"{outcomes.linear_index[i]}, {outcomes.hit_index[i]}, "
-            f"{_vector([x.value[i] for x in outcomes.hit])}, {_number(outcomes.height_before.value[i])}, "
-            f"{bool(outcomes.steep[i])}",
+            reference=f"{hits.linear_index[i]}, {hits.hit_index[i]}, {_vector(hits.hit.value[i])}, "
+            f"{_number(hits.height_before.value[i])}, {bool(hits.steep[i])}",
             port=_handed(port, pixel, ARRAYS["march"]),
-            margin=abs(float(margin.value[0])),
-            bound=float(margin.error[0]),
+            margin=abs(margin) if kept else None,
+            bound=float(hits.hit.error[i, 2] + hits.height_before.error[i]) if kept else None,
+            note="" if kept else "discarded",
         )
+
+
+def _near_plane(search: Search, index: int) -> Iterator[TraceRow]:
+    """Of the lattice point that the search ended at: a hit before the near plane is discarded."""
+    point = search.rays.at(np.array([0]), np.array([index]), search.lattice)
+    z, _ = window_depth(search.constants, point)
+    certain = abs(z.value[0]) > z.error[0]
+    yield TraceRow(
+        step=f"k = {index}: clip z >= 0, at or behind the near plane",
+        reference="yes" if z.value[0] >= 0.0 else "no: discarded",
+        port="",
+        margin=abs(float(z.value[0])),
+        bound=float(z.error[0]),
+        note="certain" if certain else "either way is legal",
+    )
 
 
 def _reference_stop(search: Search) -> int | None:
@@ -214,17 +241,12 @@ def _shade(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
         yield from _shadow(port, constants_index=int(hits.polygon[i]), hit=hit)
     for i in range(len(shades.hit)):
         for name, legal in (("shade.albedo", shades.albedo[i]), ("shade.normal", shades.normal[i])):
-            yield _row(name, legal, port.floats(name)[pixel] if name in port.handed else None)
-        lit = bool(shades.lit[i])
-        yield TraceRow(step="shade.lit", reference=str(lit), port=_handed(port, pixel, ("shade.lit",)))
-    surfaces = light_input(port, hits, shades)
-    _, color = lighted(port.constants, hits, surfaces)
-    for i in range(len(color.value)):
-        found = (
-            np.asarray(port.handed["color"])[divmod(pixel, port.case.scene.camera.width)] if port.has("color") else None
-        )
-        scale = 255.0 if found is not None and found.dtype == np.uint8 else 1.0
-        yield _row("colour", color[i], None if found is None else found.astype(np.float64) / scale)
+            yield _row(f"legal: {name}" if name in port.handed else name, legal, None)
+        yield TraceRow(step="legal: shade.lit", reference=str(bool(shades.lit[i])), port="")
+    if not port.names("shade"):
+        _, color = lighted(port.constants, hits, shades)
+        for i in range(len(color.value)):
+            yield _row("colour", color[i], None)
 
 
 def _shadow(port: Port, constants_index: int, hit: list[Bounded]) -> Iterator[TraceRow]:

@@ -17,7 +17,7 @@ from ibr_ref.oracle.referees.displacement.constants import Constants, Vector, cl
 Ints = NDArray[np.int64]
 
 BASE = 0
-_QUADS = np.array(
+QUADS = np.array(
     [
         [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)],
         [(0, 0, 0), (0, 1, 0), (0, 1, 1), (0, 0, 1)],
@@ -64,7 +64,7 @@ def faces_of(constants: Constants, params: Params) -> Faces:
         numbers, patch = np.array([BASE]), _extended_base(constants)
     else:
         numbers = numbers[numbers == BASE] if params.faces == "base" else numbers
-        patch = exact(_QUADS[numbers].reshape(-1, 3), constants.device)
+        patch = exact(QUADS[numbers].reshape(-1, 3), constants.device)
     clip = stacked(clip_point(constants, [patch[:, i] for i in range(3)]))
     return Faces(numbers=numbers.astype(np.int64), patch=patch, clip=clip)
 
@@ -72,7 +72,7 @@ def faces_of(constants: Constants, params: Params) -> Faces:
 def _extended_base(constants: Constants) -> Bounded:
     """The rectangle around the polygon and what the eye sees the top's corners on (section 3.2.1), (4, 3)."""
     device, eye = constants.device, constants.eye
-    top = exact(_QUADS[5], device)
+    top = exact(QUADS[5], device)
     w = exact(constants.eye_w, device)
     up = eye[2] - w * top[:, 2]
     sides = []

@@ -79,8 +79,8 @@ class ShadowsReferee:
         return self._alone
 
     def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
-        """The computation of one element; index: that in its stage's judgement."""
-        return trace(case, device, handed, stage, index)
+        """The computation of one element; stage: a stage or an array, index: that in its judgement."""
+        return trace(Inputs(case, device, handed, self._of(case, device)), stage, index)
 
     def parameters(self, case: Case) -> list[Parameter]:
         """What moves the image."""

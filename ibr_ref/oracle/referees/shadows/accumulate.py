@@ -13,6 +13,7 @@ from ibr_ref.oracle.device import TINY, UNIT, Device
 from ibr_ref.oracle.referees.shadows.transform import centered, gamma
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 
 def accumulated(shadows: Sequence[Bounded], unorm8: bool) -> Bounded:
@@ -29,6 +30,13 @@ def accumulated(shadows: Sequence[Bounded], unorm8: bool) -> Bounded:
     rounding = gamma(device, 2.0 + 2.0 * count, 1.0) * size + 2.0 * count * TINY
     # The reference's sum ends at 1; a float buffer does not clamp, and a port's may be above by its roundings.
     return Bounded(np.minimum(value, 1.0), error + rounding, device)
+
+
+def in_bytes(found: Floats, device: Device) -> Bools:
+    """Which numbers of a port may be what an 8-bit buffer holds: k / 255, as a quotient or a product with its inverse."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        steps = np.rint(255.0 * found)
+        return np.asarray(np.abs(found - steps / 255.0) <= (device.quotient + device.operation) * UNIT, np.bool_)
 
 
 def _in_bytes(shadows: Sequence[Bounded], device: Device) -> Bounded:

@@ -224,7 +224,10 @@ class Inputs:
     def made_rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """From the nine maps."""
         targets, shares = self.row_grids(sample, place), self.shares(sample, place)
-        return [pair(self.sources(place, k), shares[k], target, self.nearest) for k, target in enumerate(targets)]
+        return [
+            pair(self.sources(place, k), shares[k], target, self.nearest, self.nothing)
+            for k, target in enumerate(targets)
+        ]
 
     def sources(self, place: tuple[Place, Place], row: int) -> list[Source]:
         """The two maps of a row."""
@@ -236,11 +239,16 @@ class Inputs:
         """The policy of three warps."""
         return bool(self.case.params.policy == "nearest")
 
+    @property
+    def nothing(self) -> float:
+        """A texel without anything."""
+        return 1.0 if self.case.params.content == "depth" else 0.0
+
     def made_image(self, sample: int, place: tuple[Place, Place]) -> Bounded:
         """(S, S) from the rows."""
         grids, rows = self.row_grids(sample, place), self.rows(sample, place)
         sources = [Source(row, grid) for row, grid in zip(rows, grids, strict=True)]
-        return pair(sources, self.shares(sample, place)[2], self.grid(sample, place), self.nearest)
+        return pair(sources, self.shares(sample, place)[2], self.grid(sample, place), self.nearest, self.nothing)
 
     def map(self, sample: int) -> Map:
         """What is projected for a sample."""

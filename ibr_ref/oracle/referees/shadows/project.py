@@ -54,10 +54,15 @@ class Shadow:
     """Whether that is legal."""
     spoiled: Bools
     """What it is made of is no number: anything is legal, the fault lies before."""
+    whole: bool = False
+    """The outcome of one comparison: 0 or 1, and nothing between them where either is legal."""
 
     def allows(self, found: Floats) -> Bools:
         """Whether a port's number is legal."""
-        return np.asarray(self.first.allows(found) | (self.open & self.other.allows(found)) | self.spoiled)
+        legal = self.first.allows(found) | (self.open & self.other.allows(found))
+        if self.whole:
+            legal &= (found == 0.0) | (found == 1.0)
+        return np.asarray(legal | self.spoiled)
 
 
 def coordinate(lens: Lens, world: Sequence[Bounded]) -> Coordinate:
@@ -92,7 +97,8 @@ def shadow(case: Any, texels: Map, at: Coordinate, caster: Bools) -> Shadow:
     alternative = _either(read, other, open_).where(~inside, other.where(open_, none))
     both = _either(alternative, none, inside)
     spoiled = at.spoiled | (reads(texels.spoiled, at.s, at.t) if texels.spoiled.any() else False)
-    return Shadow(first, both.where(border, other), (border | open_) & possible, spoiled)
+    whole = case.params.content == "depth" and not case.params.pcf
+    return Shadow(first, both.where(border, other), (border | open_) & possible, spoiled, whole)
 
 
 def _either(a: Bounded, b: Bounded, also: Bools) -> Bounded:

@@ -13,7 +13,7 @@ from ibr_ref.oracle.accept.bounded import converted, stored
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.shadows import resolve
-from ibr_ref.oracle.referees.shadows.accumulate import accumulated
+from ibr_ref.oracle.referees.shadows.accumulate import accumulated, in_bytes
 from ibr_ref.oracle.referees.shadows.branches import Branches, branches, in_shadow, spread
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement
@@ -62,26 +62,26 @@ def projected(given: Inputs) -> Judgement | None:
     if not names:
         return None
     seen, pixel = given.seen, given.seen.pixel
-    fragments, nothing = _agreeing(given)
-    legal = {name: fragments.copy() for name in names}
+    fragments, bare = _agreeing(given)
+    legal, nothing = {name: fragments.copy() for name in names}, {name: bare.copy() for name in names}
     undecided, width = seen.wild.copy(), np.zeros(len(seen.empty))
     for i, at in enumerate(given.coordinates):
         if coords is not None:
             own = coords[i].reshape(-1, 3)
-            nothing &= (own == 0.0).all(axis=1)
+            nothing["project.coord"] &= (own == 0.0).all(axis=1)
             for k, axis in enumerate(at.axes):
                 legal["project.coord"] &= axis.allows(own[pixel, k])
                 np.maximum.at(width, pixel, 2.0 * axis.error)
             at = handed(own[pixel], at)
         if found is not None:
             flat = found[i].reshape(-1)
-            nothing &= flat == 0.0
+            nothing["project.shadow"] &= flat == 0.0
             shadows = shadow(given.case, given.map(i), at, seen.caster)
             legal["project.shadow"] &= shadows.allows(flat[pixel])
             undecided[pixel[_differs(shadows)]] = True
             np.maximum.at(width, pixel, 2.0 * np.broadcast_to(shadows.first.error, pixel.shape))
-    right = [seen.any_of(pixel, legal[name], nothing).reshape(seen.shape) for name in names]
-    every = np.logical_and.reduce([legal[name] for name in names])
+    right = [seen.any_of(pixel, legal[name], nothing[name]).reshape(seen.shape) for name in names]
+    every = [np.logical_and.reduce([each[name] for name in names]) for each in (legal, nothing)]
     return judgement(
         "project",
         "pixel",
@@ -90,7 +90,7 @@ def projected(given: Inputs) -> Judgement | None:
         width.reshape(seen.shape),
         replayed=_fed(given, *names),
         undecided=undecided.reshape(seen.shape),
-        together=seen.any_of(pixel, every, nothing).reshape(seen.shape),
+        together=seen.any_of(pixel, *every).reshape(seen.shape),
     )
 
 
@@ -108,7 +108,8 @@ def sums(given: Inputs) -> Judgement | None:
     if own is not None:
         shadows = [stored(_numbers(s), given.device) for s in own]
         bound = accumulated(shadows, given.case.params.accumulation == "unorm8")
-        right = bound.allows(found) | ~np.isfinite(own.sum(axis=0))  # what is no number is wrong before
+        # What is no number is wrong before.
+        right = (bound.allows(found) & _stored(given, found)) | ~np.isfinite(own).all(axis=0)
         width = np.broadcast_to(2.0 * bound.error, found.shape)
         return judgement("accumulate", "pixel", [name], [right], width, replayed=_fed(given, name))
     seen, outcomes = given.seen, _outcomes(given)
@@ -117,12 +118,20 @@ def sums(given: Inputs) -> Judgement | None:
     legal = outcomes.shadow.allows(found.reshape(-1)[pixel]) & fragments[outcomes.fragment]
     right = seen.any_of(pixel, legal, nothing & (found.reshape(-1) == 0.0))
     right[seen.pixel[outcomes.crowded]] = True
+    right &= _stored(given, found).reshape(-1)
     width = np.zeros(found.size)
     np.maximum.at(width, pixel, 2.0 * np.broadcast_to(outcomes.shadow.error, pixel.shape))
     feeds = _fed(given, name)
     return judgement(
         "accumulate", "pixel", [name], [right.reshape(seen.shape)], width.reshape(seen.shape), replayed=feeds
     )
+
+
+def _stored(given: Inputs, found: Floats) -> Bools:
+    """Whether sums may be what the accumulation's buffer holds."""
+    if given.case.params.accumulation == "unorm8":
+        return in_bytes(found, given.device)
+    return np.isfinite(found)
 
 
 def _fed(given: Inputs, *names: str) -> tuple[str, ...]:

@@ -152,17 +152,17 @@ def _outcomes(
 def _judged(
     stage: str, case: Case, handed: Handed, found: Outcomes, reference: Floats, replayed: tuple[str, ...]
 ) -> Judgement:
-    """Colour and depth must agree with one and the same outcome."""
+    """Depth and colour must agree with one and the same outcome; what is seen is known before how it looks."""
     shape = (case.scene.camera.height, case.scene.camera.width)
     pixels = shape[0] * shape[1]
     agrees, bad = np.ones(len(found.pixel), np.bool_), {}
+    if "depth" in handed:
+        agrees &= found.depth.allows(np.asarray(handed["depth"], np.float64).reshape(-1)[found.pixel])
+        bad["depth"] = _without(found, agrees, pixels)
     if "color" in handed:
         picture = np.asarray(handed["color"]).reshape(-1, 3)
         agrees &= allows_color(found.color, picture[found.pixel]).all(axis=1)
         bad["color"] = _without(found, agrees, pixels)
-    if "depth" in handed:
-        agrees &= found.depth.allows(np.asarray(handed["depth"], np.float64).reshape(-1)[found.pixel])
-        bad["depth"] = _without(found, agrees, pixels)
     low, high = np.full((pixels, 3), np.inf), np.full((pixels, 3), -np.inf)
     np.minimum.at(low, found.pixel, found.color.low)
     np.maximum.at(high, found.pixel, found.color.high)

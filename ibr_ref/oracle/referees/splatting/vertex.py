@@ -18,7 +18,10 @@ from ibr_ref.splatting.contract import STAGES
 
 Bools = NDArray[np.bool_]
 
-ARRAYS = ("vertex.source", "vertex.width", "vertex.window", "vertex.depth", "vertex.color")
+ARRAYS = ("vertex.source", "vertex.window", "vertex.depth", "vertex.width", "vertex.color")
+"""In order of computation: the law of the width is taken at the distance of a point that has been placed."""
+LEADERS = ("vertex.width", "vertex.window", "vertex.depth")
+"""What tells whether the port has kept a point: the first of them that it handed in."""
 
 
 def judge(case: Case, device: Device, handed: Handed) -> Judgement:
@@ -49,7 +52,7 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
 
 def numbers(where: Placed) -> dict[str, tuple[Bounded, ...]]:
     """The stage's continuous arrays but for the colour, column by column."""
-    return {"vertex.width": (where.width,), "vertex.window": (where.x, where.y), "vertex.depth": (where.depth,)}
+    return {"vertex.window": (where.x, where.y), "vertex.depth": (where.depth,), "vertex.width": (where.width,)}
 
 
 def outcomes(where: Placed, handed: Handed) -> tuple[dict[str, Bools], bool]:
@@ -60,7 +63,7 @@ def outcomes(where: Placed, handed: Handed) -> tuple[dict[str, Bools], bool]:
     given = {name: np.asarray(handed[name], np.float64) for name in numbers(where) if name in handed}
     if not given:
         return {}, False
-    leader = next(iter(given))
+    leader = next(name for name in LEADERS if name in given)
     says = given[leader] > 0.0 if leader == "vertex.width" else np.isfinite(_rows(given[leader])).any(axis=1)
     kept = np.where(where.doubtful, says, where.kept)
     bad = {}
