@@ -131,6 +131,7 @@ def _shadows() -> dict[str, Beside]:
         "rows": warped("rows"),
         "columns": warped("columns"),
         "policy": warped("policy"),
+        "interpolation": warped("interpolation"),
         "controls": Beside("no others have control points", {"method": "warp"}),
         "maps": Beside("no others are made beforehand", {"method": "warp"}),
     }
