@@ -30,9 +30,11 @@ def json_text(value: Any, indent: str = "") -> str:
     return json.dumps(value, allow_nan=False, ensure_ascii=False)
 
 
-def _reads(method: str, name: str) -> str:
-    reads = READS[method]
-    return ", ".join(reads[name if name in reads else name.rpartition(".")[0]]) or "-"
+def _reads(document: Document, name: str) -> str:
+    """Those that the case has: a map that is rendered directly is made of no grid."""
+    reads = READS[document.method]
+    there = {stage.name for stage in document.expected} | {stage.name.rpartition(".")[0] for stage in document.expected}
+    return ", ".join(one for one in reads[name if name in reads else name.rpartition(".")[0]] if one in there) or "-"
 
 
 def readme(document: Document) -> str:
@@ -45,12 +47,13 @@ def readme(document: Document) -> str:
 Method: {document.method}. Kind: {document.kind}. Meant for the device profile {document.profile}.
 
 `case.json` has the scene, every parameter and all matrices; `inputs/` the arrays that it names; `expected/` what the
-reference draws. This page says what they mean, and the part of the method that this case needs.
+reference draws. This page says what they mean, and the part of the method that this case needs; the whole of it is
+printed by `ibr-ref method {document.method}`.
 
 ## Handing in
 
-Draw the scene, write your arrays into a folder under the names of `expected/` (any of them, or `color.png` alone), and ask
-`ibr-ref check` for a verdict. {_HANDING_IN}
+Draw the scene, write your arrays into a folder under the names of `expected/` (any of them, or `color.png` alone), and
+ask for a verdict: `ibr-ref check CASE_FOLDER YOUR_FOLDER`. {_HANDING_IN}
 
 ## case.json
 
@@ -101,9 +104,7 @@ def _expected(document: Document) -> str:
     ]
     for stage in results:
         cells = f"| {stage.name} | {stage.shape} {stage.dtype} | {stage.meaning} | {stage.nothing} |"
-        lines.append(
-            cells + (f" {left[stage.name] or '-'} |" if more else "") + f" {_reads(document.method, stage.name)} |"
-        )
+        lines.append(cells + (f" {left[stage.name] or '-'} |" if more else "") + f" {_reads(document, stage.name)} |")
     if more:
         lines += ["", '"own": a discarded fragment or point leaves there what any other has.']
     lines += ["", _JUDGED_ON]
