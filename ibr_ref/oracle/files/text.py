@@ -11,9 +11,9 @@ from ibr_ref.contract import described, spelled
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.files.features import features
 from ibr_ref.oracle.files.fields import field_list, input_table
-from ibr_ref.oracle.referees.reads import READS
+from ibr_ref.oracle.referees.reads import reads_of
 from ibr_ref.oracle.schema import Document
-from ibr_ref.oracle.schema.stages import CONTRACTS
+from ibr_ref.oracle.schema.stages import contract_of
 from ibr_ref.pages import excerpt
 
 
@@ -31,7 +31,7 @@ def json_text(value: Any, indent: str = "") -> str:
 
 
 def _reads(method: str, name: str) -> str:
-    reads = READS[method]
+    reads = reads_of(method)
     return ", ".join(reads[name if name in reads else name.rpartition(".")[0]]) or "-"
 
 
@@ -92,7 +92,7 @@ def _expected(document: Document) -> str:
     """The table of the results, and the names of the margins."""
     results = [stage for stage in document.expected if stage.kind == "result"]
     margins = [f"`{stage.name}`" for stage in document.expected if stage.kind == "margin"]
-    contract = CONTRACTS[document.method]
+    contract = contract_of(document.method)
     left = {stage.name: spelled(described(contract, stage.name).discarded) for stage in results}
     more = any(left.values())
     lines = [
@@ -107,5 +107,6 @@ def _expected(document: Document) -> str:
     if more:
         lines += ["", '"own": a discarded fragment or point leaves there what any other has.']
     lines += ["", _JUDGED_ON]
-    lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
+    if margins:
+        lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
     return "\n".join(lines)
