@@ -56,6 +56,13 @@ class Policy(StrEnum):
     nearest = "nearest"
 
 
+class Interpolation(StrEnum):
+    """Pace of the control points between two maps."""
+
+    linear = "linear"
+    projective = "projective"
+
+
 class Content(StrEnum):
     """What a map holds."""
 
@@ -114,6 +121,9 @@ def command(
     rows: Annotated[int, typer.Option(parser=options.whole, help="Control points downwards.")] = 15,
     columns: Annotated[int, typer.Option(parser=options.whole, help="Control points across.")] = 5,
     policy: Annotated[Policy, typer.Option(help="Six warps a map, or three.")] = Policy.dissolve,
+    interpolation: Annotated[
+        Interpolation, typer.Option(help="Pace between two maps: even, as in the paper, or that of perspective.")
+    ] = Interpolation.linear,
     content: Annotated[Content, typer.Option(help="Silhouettes, or depths.")] = Content.mask,
     controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = Controls.fast,
     maps: Annotated[
@@ -174,6 +184,7 @@ def command(
                 "rows": rows,
                 "columns": columns,
                 "policy": policy.value,
+                "interpolation": interpolation.value,
                 "content": content.value,
                 "light_samples": samples,
                 "method": method.value,
@@ -183,6 +194,9 @@ def command(
             prepared = loaded or (_prepared(scene, params, controls, maps, step) if method is Method.warp else None)
             step("rendering")
             frame, lines = _frame(scene, params, prepared, stages is not None, report)
+            poor = None if prepared is None else _poor(prepared)
+            if poor:
+                typer.echo(poor, err=True)
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
@@ -201,6 +215,13 @@ def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: 
 
     frame = shadows.render(scene, params, maps=maps, stages=keep or report)
     return frame, report_lines(scene, params, frame, maps) if report else []
+
+
+def _poor(maps: Maps) -> str | None:
+    """A line for standard error."""
+    from ibr_ref.cli.shadows_report import poor_line
+
+    return poor_line(maps)
 
 
 def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> tuple[Frame, list[str]]:
@@ -278,6 +299,7 @@ def goes_with() -> dict[str, Beside]:
         "rows": warped("rows"),
         "columns": warped("columns"),
         "policy": warped("policy"),
+        "interpolation": warped("interpolation"),
         "controls": Beside("no others have control points", {"method": "warp"}),
         "maps": Beside("no others are made beforehand", {"method": "warp"}),
     }

@@ -20,7 +20,7 @@ def report_lines(scene: Scene, params: Params, frame: Frame, maps: Maps | None) 
 
     lines = []
     if maps is not None:
-        lines.append(f"maps and controls: {maps.nbytes:,} bytes")
+        lines += [f"maps and controls: {maps.nbytes:,} bytes", *placement_lines(params, maps)]
         cut = shadows.cut_by_light(scene, params, of_maps=True)
         if cut.cut:
             lines.append(f"the light's frustum does not hold the caster at all nine places: {cut.words()}")
@@ -40,6 +40,33 @@ def report_lines(scene: Scene, params: Params, frame: Frame, maps: Maps | None) 
         f"shadow in the picture: IoU {iou(ours, theirs):.3f}, mean difference {soft_difference(ours, theirs):.4f}"
     )
     return lines
+
+
+def placement_lines(params: Params, maps: Maps) -> list[str]:
+    """How the control points were chosen, and what was expected of them."""
+    placed = maps.choice
+    if placed is None:
+        return ["control points: simple or given ones, not compared with others"]
+    chosen = placed.chosen
+    lines = [
+        f"control points: {chosen.name}; at {placed.places} other places IoU {chosen.mean:.3f} in the mean, "
+        f"{chosen.worst:.3f} at worst",
+        "not taken: " + ", ".join(f"{other.name} {other.mean:.3f} / {other.worst:.3f}" for other in placed.others),
+    ]
+    if placed.interpolation != params.interpolation:
+        lines.append(f"they were chosen for interpolation {placed.interpolation}, not {params.interpolation}")
+    return lines
+
+
+def poor_line(maps: Maps) -> str | None:
+    """What is said even without a report: that no control points serve this shadow well."""
+    if maps.choice is None or maps.choice.good:
+        return None
+    chosen = maps.choice.chosen
+    return (
+        f"no good control points were found: with the best ({chosen.name}) maps are expected to have an IoU of "
+        f"{chosen.mean:.2f} with rendered ones; a smaller range, larger maps or --map-samples may help"
+    )
 
 
 def soft_report_line(scene: Scene, frame: Frame) -> str:

@@ -46,10 +46,7 @@ def table() -> dict[str, dict[str, Beside]]:
         "demo": always("out"),
         "bench": {
             **always("method", "repeat", "json"),
-            "msr": Beside(
-                "photographs are splatted",
-                {"method": ("all", *of_photographs)},
-            ),
+            "msr": Beside("photographs are splatted", {"method": ("all", *of_photographs)}),
         },
         "method": always("name"),
         "reproduce": always("paper", "out", "again"),

@@ -42,10 +42,6 @@ def contents(path: str | PathLike[str]) -> bytes:
     raise ValueError(f"{named(path)}: found {status.st_size} bytes, allowed: 1 to 2^32")
 
 
-_LONGEST_MESSAGE = 400
-"""Characters behind the path: decoders quote what they read."""
-
-
 @contextmanager
 def naming(path: str | PathLike[str]) -> Iterator[None]:
     """Around a decoder: whatever it raises comes out as a ValueError of one line that starts with the path.

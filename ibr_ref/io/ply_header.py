@@ -16,6 +16,8 @@ _TYPES = {
 _ORDERS = {b"ascii": "", b"binary_little_endian": "<", b"binary_big_endian": ">"}
 _LONGEST = 2**16
 """Bytes of a header: that of a file of all that any program writes is some thousand."""
+_LONGEST_NAME = 64
+"""Bytes: errors show them."""
 
 
 class Property(NamedTuple):
@@ -97,13 +99,13 @@ def _order(words: list[bytes]) -> str:
 
 
 def _element(words: list[bytes], before: list[Element]) -> Element:
-    allowed = "element, a new name and the number of rows"
+    allowed = "element, a new name of up to 64 bytes and the number of rows"
     try:
         _, name, rows = words
         result = Element(name.decode("latin-1"), whole(rows), [])
     except ValueError:
         raise ValueError(allowed) from None
-    if result.rows < 0 or result.name in [element.name for element in before]:
+    if result.rows < 0 or len(name) > _LONGEST_NAME or result.name in [element.name for element in before]:
         raise ValueError(allowed)
     return result
 
@@ -112,7 +114,7 @@ def _property(words: list[bytes], element: Element) -> Property:
     """`property TYPE NAME` or `property list TYPE TYPE NAME`."""
     types = [_TYPES.get(word.decode("latin-1")) for word in words[1:-1]]
     name = words[-1].decode("latin-1")
-    if words[0] == b"property" and name not in [one.name for one in element.properties]:
+    if words[0] == b"property" and len(name) <= _LONGEST_NAME and name not in [one.name for one in element.properties]:
         if len(types) == 1 and types[0]:
             return Property(name, types[0])
         if len(types) == 3 and words[1] == b"list" and types[1] and types[2] and types[1][0] != "f":

@@ -96,7 +96,9 @@ def _unpacked(element: Element, form: str, body: bytes, place: int) -> tuple[tup
 def _list_bytes(element: Element, one: Property, length: int, left: int) -> int:
     size = length * np.dtype(one.type).itemsize
     if not 0 <= size <= left:
-        raise ValueError(f"found a list {one.name} of {length} in element {element.name}, {left} bytes are left for it")
+        raise ValueError(
+            f"found a list of {length} {one.name} in element {element.name}, allowed: what {left} bytes hold"
+        )
     return size
 
 

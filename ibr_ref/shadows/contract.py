@@ -6,6 +6,7 @@ from ibr_ref.contract import StageArray
 
 _INF = float("inf")
 _WARP = 'method="warp"'
+_PACED = 'method="warp", interpolation="projective"'
 
 STAGES: dict[str, StageArray] = {
     "maps.positions": StageArray(
@@ -13,6 +14,9 @@ STAGES: dict[str, StageArray] = {
         dtype="float64",
         meaning="the object's offsets for the nine maps, [j, i] = (x_i, y_j)",
         only=_WARP,
+    ),
+    "maps.depths": StageArray(
+        shape=(3, 3), dtype="float64", meaning="depth of the caster's middle in the nine maps", only=_PACED
     ),
     "maps.image": StageArray(
         shape=(3, 3, "S", "S"),
@@ -34,6 +38,13 @@ STAGES: dict[str, StageArray] = {
     ),
     "warp.fraction": StageArray(
         shape=(2,), dtype="float64", meaning="s and t in the cell", per_sample=True, only=_WARP
+    ),
+    "warp.shares": StageArray(
+        shape=(3,),
+        dtype="float64",
+        meaning="s of the upper row, s of the lower row, and t, as the pace has them",
+        per_sample=True,
+        only=_PACED,
     ),
     "warp.row_grids": StageArray(
         shape=(2, "R", "C", 2),

@@ -14,13 +14,13 @@ from ibr_ref.shadows import grid
 from ibr_ref.shadows.grid import MapGrid
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.maps import values
-from ibr_ref.shadows.prepared import Maps, check_unfolded, prepare, source_of, texels_at, view_of
+from ibr_ref.shadows.prepared import Maps, check_unfolded, depths_of, prepare, source_of, texels_at, view_of
 from ibr_ref.shadows.project import DEPTH, DEPTH_PCF, MASK, Lookup, Projected, project
 from ibr_ref.shadows.resolve import accumulate, resolve
 from ibr_ref.shadows.samples import Sample, samples_of, seen_offset
 from ibr_ref.shadows.surface import Object, Surface, see
 from ibr_ref.shadows.vertex import place
-from ibr_ref.shadows.warp import Warped, grids_at, locate, warp_stage
+from ibr_ref.shadows.warp import Warped, grids_at, locate, shares_at, warp_stage
 
 Array = NDArray[np.float64]
 
@@ -130,20 +130,22 @@ def _warped(
     scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps, stages: bool
 ) -> tuple[list[Array], dict[str, Any]]:
     warps = []
+    depths, nearest = depths_of(scene, params, maps.positions), params.policy == "nearest"
     for i, sample in enumerate(samples):
         cell, fraction = locate(maps.positions, seen_offset(scene, sample))
-        _check_grids(maps.controls, cell, fraction, i)
-        nearest = params.policy == "nearest"
-        warps.append(warp_stage(maps.nine, cell, fraction, nearest))
+        _check_grids(maps.controls, cell, shares_at(cell, fraction, depths), i)
+        warps.append(warp_stage(maps.nine, cell, fraction, depths, nearest))
     images = [w.image for w in warps]
     if not stages:
         return images, {}
     made = {"maps.positions": maps.positions, "maps.image": maps.image, "controls": maps.controls}
-    return images, {**made, **_grouped("warp", Warped._fields, warps)}
+    if depths is None:
+        return images, {**made, **_grouped("warp", [name for name in Warped._fields if name != "shares"], warps)}
+    return images, {**made, "maps.depths": depths, **_grouped("warp", Warped._fields, warps)}
 
 
-def _check_grids(controls: Array, cell: NDArray[np.int32], fraction: Array, sample: int) -> None:
-    row_grids, between = grids_at(controls, cell, fraction)
+def _check_grids(controls: Array, cell: NDArray[np.int32], three: Array, sample: int) -> None:
+    row_grids, between = grids_at(controls, cell, three)
     for name, points in (("row_grids[0]", row_grids[0]), ("row_grids[1]", row_grids[1]), ("grid", between)):
         check_unfolded(f"controls (warp.{name} of light sample {sample})", points)
 

@@ -63,8 +63,33 @@ def test_prepared_maps_are_written_once_and_read_again(run: Run, cube: Path, tmp
 def test_the_report(run: Run, cube: Path, tmp_path: Path) -> None:
     code, out, err = run(*of_cube(cube, tmp_path / "out.png", "--report"))
     assert (code, err) == (0, "")
-    for word in ("bytes", "IoU", "mean difference"):
+    for word in ("bytes", "IoU", "mean difference", "control points: ", "at 32 other places", "not taken: ", "bounds"):
         assert word in out
+    code, out, err = run(*of_cube(cube, tmp_path / "out.png", "--report", "--controls", "bounds"))
+    assert (code, err) == (0, "")
+    assert "not compared" in out
+
+
+def test_the_projective_pace(run: Run, cube: Path, tmp_path: Path) -> None:
+    out, stages, maps = tmp_path / "out.png", tmp_path / "dump.npz", tmp_path / "maps.npz"
+    more = ("--maps", maps, "--interpolation", "projective", "--offset", "0.3,-0.2")
+    assert run(*of_cube(cube, out, *more, "--stages", stages)) == (0, "", "")
+    with np.load(stages, allow_pickle=False) as dump:
+        assert dump["warp.shares"].shape == (3,)
+        assert dump["maps.depths"].shape == (3, 3)
+    code, said, err = run(*of_cube(cube, out, "--maps", maps, "--report"))
+    assert (code, err) == (0, "")
+    assert "chosen for interpolation projective, not linear" in said
+
+
+def test_that_no_good_control_points_were_found_is_said(run: Run, tmp_path: Path) -> None:
+    """A bar so thin that hardly a texel's centre is in its shadow."""
+    path = tmp_path / "bar.obj"
+    path.write_text("v 0 0 0\nv 5 0 3\nv 5 .02 3.02\nv 0 .02 .02\nf 1 2 3\nf 1 3 4\n")
+    code, out, err = run(*of_cube(path, tmp_path / "out.png", "--map-size", 32))
+    assert (code, out) == (0, "")
+    assert err.startswith("no good control points were found: ")
+    assert err.count("\n") == 1
 
 
 @pytest.mark.parametrize("method", ["traced", "convolution", "pcss"])

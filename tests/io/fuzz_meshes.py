@@ -197,9 +197,10 @@ def _message(text: str, path: str) -> tuple[str, str]:
     said = text.removeprefix(f"{path}: ")
     if "does not fit in memory" in said:
         return "memory", said
-    if said.startswith("is damaged") or said == text:
+    if said.startswith("found what cannot be decoded") or said == text:
         return "undocumented", text
-    if len(said) > LONGEST_MESSAGE or "\n" in said or "http" in said:
+    addresses = said.replace("http://example.org", "")  # of the corpus, quoted
+    if len(said) > LONGEST_MESSAGE or "\n" in said or "http" in addresses:
         return "message", said
     return "refused", said
 

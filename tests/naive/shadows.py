@@ -99,16 +99,38 @@ def prepare(scene: Any, params: Any) -> tuple[np.ndarray, np.ndarray]:
     return positions, prepared_maps(scene, params, positions)
 
 
+def caster_depths(scene: Any, positions: Any) -> np.ndarray:
+    """(3, 3) depth of the middle of the caster's box along the light's view axis, at the nine offsets."""
+    vertices = [vec3(vertex) for vertex in np.asarray(scene.caster.vertices)]
+    middle = tuple((min(v[k] for v in vertices) + max(v[k] for v in vertices)) / 2.0 for k in range(3))
+    a, b = vec3(scene.offset_axes[0]), vec3(scene.offset_axes[1])
+    backwards = camera_at(scene.light, vec3(scene.light.position)).view_from_world[2]
+    depths = np.empty((3, 3))
+    for j in range(3):
+        for i in range(3):
+            x, y = float(positions[j, i, 0]), float(positions[j, i, 1])
+            p = tuple((middle[k] + x * a[k]) + y * b[k] for k in range(3))
+            depths[j, i] = -(backwards[0] * p[0] + backwards[1] * p[1] + backwards[2] * p[2] + backwards[3])
+    return depths
+
+
 def warp_stages(scene: Any, params: Any, samples: list[Sample], controls: Any, maps: Any) -> Stages:
     """The stages "maps.*", "controls" and "warp.*" of the method "warp"."""
     positions, images = prepare(scene, params) if maps is None else maps
-    warps = [warped_map(offset_seen_from(scene, sample), positions, images, controls, params) for sample in samples]
+    depths = caster_depths(scene, positions) if getattr(params, "interpolation", "linear") == "projective" else None
+    warps = [
+        warped_map(offset_seen_from(scene, sample), positions, images, controls, params, depths) for sample in samples
+    ]
     stages = {
         "maps.positions": np.array(positions, dtype=np.float64),
         "maps.image": np.array(images, dtype=np.float64),
         "controls": np.array(controls, dtype=np.float64),
     }
+    if depths is not None:
+        stages["maps.depths"] = depths
     for name in warps[0]._fields:
+        if name == "shares" and depths is None:
+            continue
         stages[f"warp.{name}"] = per_sample([getattr(warp, name) for warp in warps])
     return stages
 

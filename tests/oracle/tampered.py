@@ -80,17 +80,23 @@ class _Shadows(_Change, shadows.Port):
             fraction = np.array([self.fraction_in(at[k], lines[k][cell[k] : cell[k] + 2]) for k in range(2)])
         return cell, self._changed("warp.fraction", fraction)
 
-    def row_grid(self, first: Any, second: Any, fraction: Any) -> Any:
-        return self._changed("warp.row_grids", super().row_grid(first, second, fraction))
+    def caster_depths(self) -> Any:
+        return self._changed("maps.depths", super().caster_depths())
+
+    def shares(self, cell: Any, fraction: Any) -> Any:
+        return self._changed("warp.shares", super().shares(cell, fraction))
+
+    def row_grid(self, first: Any, second: Any, share: Any) -> Any:
+        return self._changed("warp.row_grids", super().row_grid(first, second, share))
 
     def between(self, images: Any, grids: Any, grid: Any, fraction: Any) -> Any:
         return self._changed("warp.rows", super().between(images, grids, grid, fraction))
 
-    def finished(self, rows: Any, grids: Any, grid: Any, fraction: Any) -> Any:
-        return self._changed("warp.image", super().between(rows, grids, grid, fraction[1]))
+    def finished(self, rows: Any, grids: Any, grid: Any, shares: Any) -> Any:
+        return self._changed("warp.image", super().between(rows, grids, grid, shares[2]))
 
-    def final_grid(self, top: Any, bottom: Any, fraction: Any) -> Any:
-        return self._changed("warp.grid", super().final_grid(top, bottom, fraction))
+    def final_grid(self, top: Any, bottom: Any, share: Any) -> Any:
+        return self._changed("warp.grid", super().final_grid(top, bottom, share))
 
     def divided(self, q: Any) -> Any:
         return list(self._changed("project.coord", np.stack(super().divided(q), axis=-1)).T)

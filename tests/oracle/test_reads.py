@@ -23,7 +23,7 @@ from tests.oracle.tampered import Arrays, tampered
 CASES = {
     "displacement": "displacement-tiles",
     "splatting": "splatting-lamp",
-    "shadows": "shadows-oblique",
+    "shadows": "shadows-pace",
 }
 
 
@@ -83,10 +83,12 @@ WRONG: dict[str, Callable[[Any], Any]] = {
     "shade.normal": _turned,
     "shade.lit": np.logical_not,
     "maps.positions": lambda positions: positions * 1.01,
+    "maps.depths": lambda depths: depths * np.linspace(1.0, 1.1, 3),
     "maps.image": lambda image: 0.5 * image,
     "controls": _inner,
     "warp.cell": lambda cell: 1 - cell,
     "warp.fraction": lambda fraction: 0.9 * fraction,
+    "warp.shares": lambda shares: 0.9 * shares,
     "warp.row_grids": _inner,
     "warp.rows": lambda rows: 0.5 * rows,
     "warp.grid": _inner,

@@ -17,6 +17,8 @@ SIZE, ROWS, COLUMNS = 32, 5, 3
 CASES: dict[str, dict[str, Any]] = {
     "dissolve": {},
     "nearest": {"policy": "nearest"},
+    "projective": {"interpolation": "projective"},
+    "projective, nearest, five": {"interpolation": "projective", "policy": "nearest", "light_samples": 5},
     "five": {"light_samples": 5},
     "nine, unorm8": {"light_samples": 9, "accumulation": "unorm8"},
     "coverage": {"map_samples": 3},

@@ -24,7 +24,7 @@ from ibr_ref import io, models, shadows
 from ibr_ref.bench.beside_glsl.splatting import BLOCKS, COUNTED, WARM_UP, in_blocks
 from ibr_ref.ports.described import described
 from ibr_ref.ports.glsl.shadows import Port
-from ibr_ref.shadows.prepared import texels_at, view_of
+from ibr_ref.shadows.prepared import depths_of, texels_at, view_of
 from ibr_ref.shadows.samples import samples_of, seen_offset
 from ibr_ref.shadows.warp import locate, warp_stage
 
@@ -124,7 +124,7 @@ def package_maps(scene: shadows.Scene, params: shadows.Params, maps: shadows.Map
         else:
             cell, fraction = locate(maps.positions, seen_offset(scene, sample))
             nearest = params.policy == "nearest"
-            warped = warp_stage(maps.nine, cell, fraction, nearest)
+            warped = warp_stage(maps.nine, cell, fraction, depths_of(scene, params, maps.positions), nearest)
             images.append(warped.image)
     return images
 

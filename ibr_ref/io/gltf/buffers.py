@@ -9,6 +9,7 @@ from urllib.parse import unquote, unquote_to_bytes
 
 from ibr_ref.io.files import contents
 from ibr_ref.io.gltf.document import Document, member, refused, shortened
+from ibr_ref.scene.checks import named
 
 _MAGIC, _JSON, _BINARY = b"glTF", 0x4E4F534A, 0x004E4942
 _HEADER, _CHUNK = 12, 8
@@ -84,10 +85,11 @@ class Buffers:
         parts = name.split("/")
         if ".." in parts or not name or name.startswith("/") or any(c in name for c in "\\:\0"):
             raise refused(f"buffers.{index}.uri", repr(shortened(uri)), "data, or a file in the folder of the document")
+        path = self._path.parent / name
         try:
-            return contents(self._path.parent / name)
+            return contents(path)
         except (OSError, ValueError) as error:
-            reason = str(error).removeprefix(f"{self._path.parent / name}: ")
+            reason = str(error).removeprefix(f"{named(path)}: ")
             raise ValueError(f"buffers.{index}.uri: {shortened(repr(uri))} {reason}") from None
 
 

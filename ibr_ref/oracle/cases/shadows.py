@@ -250,6 +250,15 @@ def coarse() -> Case:
     return _case("coarse", "adversarial", about, _scene(), params, profile="gl")
 
 
+def pace() -> Case:
+    """Projective fractions."""
+    about = "A light aside and near: maps are passed through at the projective pace; five light samples."
+    light = _light(position=(-1.6, -1.3, 1.9), target=(0.0, 0.0, 0.0), vertical_fov=75.0, near=0.3)
+    scene = _scene(light=light, offset_range=((-0.6, 0.7), (-0.7, 0.5)), offset=(0.3, -0.35))
+    params = _params(interpolation="projective", light_samples=5, map_samples=2)
+    return _case("pace", "adversarial", about, scene, params, profile="gl")
+
+
 def thin() -> Case:
     """Thin things."""
     about = "A rack of thin bars under five light samples, the 8-bit frame buffer."
@@ -292,7 +301,7 @@ def stage() -> Case:
 
 
 _MAKERS = (
-    box, soft, nearest, depths, direct, masks, bent, oblique, beside, border, behind, far, filtered, coarse, thin,
+    box, soft, nearest, depths, direct, masks, bent, oblique, beside, border, behind, far, filtered, coarse, pace, thin,
     listed, verge, beyond, stage,
 )  # fmt: skip
 

@@ -25,6 +25,22 @@ def place_in_cell(positions: np.ndarray, offset: np.ndarray) -> tuple[list[int],
     return cell, [float((o - low) / (high - low)) for o, (low, high) in zip(offset, ends, strict=True)]
 
 
+def shares_in_cell(depths: np.ndarray | None, cell: Sequence[int], fraction: Sequence[float]) -> tuple[float, ...]:
+    """The shares of the next map in the upper row and in the lower one, and of the lower row.
+
+    depths (3, 3): the caster's in the nine maps, for the projective pace; None: s, s, t.
+    """
+    (i, j), (s, t) = cell, fraction
+    if depths is None:
+        return s, s, t
+
+    def share(f: float, w0: float, w1: float) -> float:
+        return float(f * w1 / ((1.0 - f) * w0 + f * w1))
+
+    (w00, w10), (w01, w11) = depths[j : j + 2, i : i + 2].tolist()
+    return share(s, w00, w10), share(s, w01, w11), share(t, (1 - s) * w00 + s * w10, (1 - s) * w01 + s * w11)
+
+
 class Programs:
     """Shaders of this folder by file names and #defines, linked once."""
 
@@ -175,26 +191,30 @@ class WarpedMaps:
         """The map that was warped last."""
         return self.result.texture
 
-    def draw(self, cell: Sequence[int], fraction: Sequence[float]) -> None:
-        """The rows between two maps each, then the result between the rows."""
-        s, t = fraction
+    def draw(self, cell: Sequence[int], shares: tuple[float, ...]) -> None:
+        """The rows between two maps each, then the result between the rows; shares: those of `shares_in_cell`."""
         first = 3 * cell[1] + cell[0]
         self.device.ctx.enable_only(moderngl.NOTHING)
-        for row, number in zip(self.rows, (first, first + 3), strict=True):
-            self._warp(row, self.row_vaos[number], self.images[number], self.images[number + 1], (s, t), s)
+        for row, number, share in zip(self.rows, (first, first + 3), shares[:2], strict=True):
+            own = (share, share, shares[2])
+            self._warp(row, self.row_vaos[number], self.images[number], self.images[number + 1], own, share)
         top, bottom = self.rows
-        self._warp(self.result, self.column_vaos[first], top.texture, bottom.texture, (s, t), t)
+        self._warp(self.result, self.column_vaos[first], top.texture, bottom.texture, shares, shares[2])
 
-    def grids(self, cell: Sequence[int], fraction: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    def grids(self, cell: Sequence[int], shares: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
         """The meshes (2, R, C, 2) of the rows and (R, C, 2) of the result, as the vertex shader makes them."""
         n = 3 * cell[1] + cell[0]
-        found = [self._captured(each, fraction) for each in ((n, n + 1), (n + 3, n + 4), (n, n + 1, n + 3, n + 4))]
-        return np.stack(found[:2]), found[2]
+        upper, lower, across = shares
+        rows = [
+            self._captured((n, n + 1), (upper, upper, across)),
+            self._captured((n + 3, n + 4), (lower, lower, across)),
+        ]
+        return np.stack(rows), self._captured((n, n + 1, n + 3, n + 4), shares)
 
-    def _captured(self, numbers: tuple[int, ...], fraction: Sequence[float]) -> np.ndarray:
+    def _captured(self, numbers: tuple[int, ...], shares: tuple[float, ...]) -> np.ndarray:
         vao, count = self.capture_vaos[numbers], self.shape[0] * self.shape[1]
         result = self.device.ctx.buffer(reserve=8 * count)
-        vao.program["fraction"].value = tuple(fraction)
+        vao.program["shares"].value = shares
         self.result.fbo.use()  # a draw call wants a complete frame buffer, even if nothing is rasterized
         vao.transform(result, moderngl.POINTS, vertices=count)
         points = np.frombuffer(result.read(), np.float32).reshape(*self.shape, 2).copy()
@@ -207,10 +227,10 @@ class WarpedMaps:
         vao: moderngl.VertexArray,
         first: moderngl.Texture,
         second: moderngl.Texture,
-        fraction: tuple[float, float],
+        shares: tuple[float, ...],
         share: float,
     ) -> None:
-        vao.program["fraction"].value = fraction
+        vao.program["shares"].value = shares
         if self.nearest:
             (first if share < 0.5 else second).use(0)
         else:

@@ -32,6 +32,7 @@ from ibr_ref.ports.glsl.shadow_maps import (
     create_warped_maps,
     offset_in_world,
     place_in_cell,
+    shares_in_cell,
 )
 
 FAST = {"place": (4, "f4"), "surface": (4, "f1")}
@@ -114,7 +115,8 @@ class Prepared:
         if isinstance(self.source, CasterMaps):
             self.source.draw(sample.camera, self.scene.offset)
         else:
-            self.source.draw(*place_in_cell(self.scene.maps.positions, sample.seen_offset))
+            cell, fraction = place_in_cell(self.scene.maps.positions, sample.seen_offset)
+            self.source.draw(cell, shares_in_cell(self.scene.maps.depths, cell, fraction))
 
     def _set_projection(self, program: moderngl.Program, sample: Any) -> None:
         camera = sample.camera
@@ -164,8 +166,11 @@ class Prepared:
         """Where the sample's map lies among the nine, the meshes and the rows."""
         cell, fraction = place_in_cell(self.scene.maps.positions, sample.seen_offset)
         rows = np.stack([row.read() for row in source.rows])
-        row_grids, grid = source.grids(cell, fraction)
-        return {
+        depths = self.scene.maps.depths
+        shares = shares_in_cell(depths, cell, fraction)
+        row_grids, grid = source.grids(cell, shares)
+        paced = {} if depths is None else {"warp.shares": np.array(shares)}
+        return paced | {
             "warp.cell": np.array(cell, np.int32),
             "warp.fraction": np.array(fraction),
             "warp.row_grids": row_grids,

@@ -3,7 +3,7 @@
 // COLUMN: top and bottom to the object's place; otherwise a row: two neighbouring maps to a place between them.
 // NEAREST: the nearer of the two is warped alone. CAPTURE: the mesh itself is handed back.
 
-uniform vec2 fraction;  // s, t
+uniform vec3 shares;  // of the next map in the row (COLUMN: in the upper row, in the lower row), of the lower row
 
 layout(location = 0) in vec2 in_a;  // of the row's first and second map; the top row's where COLUMN
 layout(location = 1) in vec2 in_b;
@@ -27,13 +27,13 @@ vec2 lerp(vec2 a, vec2 b, float f) {
 
 void main() {
 #ifdef COLUMN
-    vec2 first = lerp(in_a, in_b, fraction.x);
-    vec2 second = lerp(in_c, in_d, fraction.x);
-    float share = fraction.y;
+    vec2 first = lerp(in_a, in_b, shares.x);
+    vec2 second = lerp(in_c, in_d, shares.y);
+    float share = shares.z;
 #else
     vec2 first = in_a;
     vec2 second = in_b;
-    float share = fraction.x;
+    float share = shares.x;
 #endif
 #ifdef CAPTURE
     place = lerp(first, second, share);

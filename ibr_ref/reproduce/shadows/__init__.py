@@ -29,6 +29,11 @@ REPRODUCTION = Reproduction(
             "of six, the slower and nearer one.",
         ),
         (
+            "At what pace control points move between two maps.",
+            'Evenly, as the paper\'s formula has it; interpolation="projective" takes the pace that perspective gives the '
+            "caster's middle.",
+        ),
+        (
             "Control points are placed by hand; how, and how well, is not said.",
             "They are found by registration of warped on rendered maps, the same features marked in all nine.",
         ),

@@ -123,6 +123,8 @@ def _wrong(form: str) -> list[Item]:
         ("property float y", "property half y", "line 6"), ("property float z\n", "", ""), ("1.0\n", "2.0\n", "line 2"),
         (" vertex_indices", " corners", "one list"), ("element face", "element faces", "T >= 1"),
         ("end_header\n", "", "PLY header"),
+        ("element face", f"element {'x' * 65}", "line 8"), ("element face", f"element {'x' * 64}", "T >= 1"),
+        ("property float y", f"property float {'y' * 65}", "line 6"),
     ]  # fmt: skip
     found = []
     for k, (old, new, words) in enumerate(changes):

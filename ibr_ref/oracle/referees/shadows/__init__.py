@@ -14,9 +14,10 @@ from ibr_ref.oracle.referees.shadows.inputs import HANDED_OVER, Inputs
 from ibr_ref.oracle.referees.shadows.parameters import parameters
 from ibr_ref.oracle.referees.shadows.trace import trace
 
-_MADE = (replay_maps.positions, replay_maps.images, replay_maps.controls)
+_MADE = (replay_maps.positions, replay_maps.depths, replay_maps.images, replay_maps.controls)
 _JUDGES = (
     replay_maps.spots,
+    replay_maps.shares,
     replay_maps.row_grids,
     replay_maps.rows,
     replay_maps.grids,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, stored, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp, stored, uploaded
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.referees.shadows import places
@@ -153,19 +153,53 @@ class Inputs:
             None if own_fraction is None else own_fraction[sample],
         )
 
+    @property
+    def projective(self) -> bool:
+        """Whether maps are passed through at the pace of perspective."""
+        return bool(not self.direct and self.case.params.interpolation == "projective")
+
+    @cached_property
+    def depths(self) -> Bounded:
+        """(3, 3) of the caster in the nine maps: the port's own, or made at the maps' lines."""
+        own = self.fed("maps.depths", sampled=False)
+        return self.made_depths if own is None else stored(own, self.device)
+
+    @cached_property
+    def made_depths(self) -> Bounded:
+        """At the maps' lines."""
+        return places.depths(self.case, self.centre_lens, self.lines)
+
+    def shares(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
+        """Of the next map in the upper row and in the lower one, and of the lower row."""
+        own = self.fed("warp.shares") if self.projective else None
+        return self.made_shares(place) if own is None else [stored(n, self.device) for n in own[sample]]
+
+    def made_shares(self, place: tuple[Place, Place]) -> list[Bounded]:
+        """From the fractions, and the depths if they matter."""
+        x, y = place
+        if not self.projective:
+            return [x.fraction, x.fraction, y.fraction]
+        corners = [[self.depths[y.cell + k, x.cell + n] for n in range(2)] for k in range(2)]
+        ends = [lerp(row[0], row[1], x.fraction) for row in corners]
+        return [
+            places.paced(x.fraction, *corners[0]),
+            places.paced(x.fraction, *corners[1]),
+            places.paced(y.fraction, *ends),
+        ]
+
     def row_grids(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """Two (R, C, 2)."""
         own = self.fed("warp.row_grids")
         if own is not None:
             return [stored(grid, self.device) for grid in own[sample]]
-        return self.made_row_grids(place)
+        return self.made_row_grids(sample, place)
 
-    def made_row_grids(self, place: tuple[Place, Place]) -> list[Bounded]:
+    def made_row_grids(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """From the controls."""
         x, y = place
         return [
-            between(self.controls[y.cell + k, x.cell], self.controls[y.cell + k, x.cell + 1], x.fraction)
-            for k in range(2)
+            between(self.controls[y.cell + k, x.cell], self.controls[y.cell + k, x.cell + 1], share)
+            for k, share in enumerate(self.shares(sample, place)[:2])
         ]
 
     def grid(self, sample: int, place: tuple[Place, Place]) -> Bounded:
@@ -178,7 +212,7 @@ class Inputs:
     def made_grid(self, sample: int, place: tuple[Place, Place]) -> Bounded:
         """From the row grids."""
         first, second = self.row_grids(sample, place)
-        return between(first, second, place[1].fraction)
+        return between(first, second, self.shares(sample, place)[2])
 
     def rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """Two (S, S)."""
@@ -189,9 +223,9 @@ class Inputs:
 
     def made_rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
         """From the nine maps."""
-        targets = self.row_grids(sample, place)
+        targets, shares = self.row_grids(sample, place), self.shares(sample, place)
         return [
-            pair(self.sources(place, k), place[0].fraction, target, self.nearest, self.nothing)
+            pair(self.sources(place, k), shares[k], target, self.nearest, self.nothing)
             for k, target in enumerate(targets)
         ]
 
@@ -214,7 +248,7 @@ class Inputs:
         """(S, S) from the rows."""
         grids, rows = self.row_grids(sample, place), self.rows(sample, place)
         sources = [Source(row, grid) for row, grid in zip(rows, grids, strict=True)]
-        return pair(sources, place[1].fraction, self.grid(sample, place), self.nearest, self.nothing)
+        return pair(sources, self.shares(sample, place)[2], self.grid(sample, place), self.nearest, self.nothing)
 
     def map(self, sample: int) -> Map:
         """What is projected for a sample."""

@@ -103,9 +103,28 @@ def spots(given: Inputs) -> Judgement | None:
     )
 
 
+def depths(given: Inputs) -> Judgement | None:
+    """The caster's depths in the nine maps."""
+    found = given.own("maps.depths", sampled=False)
+    if found is None or not given.projective:
+        return None
+    bound, feeds = given.made_depths, fed("shadows", ["maps.depths"], given.handed)
+    return judgement("maps", "map", ["maps.depths"], [bound.allows(found)], 2.0 * bound.error, replayed=feeds)
+
+
+def shares(given: Inputs) -> Judgement | None:
+    """The projective fractions."""
+    found = given.own("warp.shares")
+    if found is None or not given.projective:
+        return None
+    feeds = fed("shadows", ["warp.shares"], given.handed)
+    compared = _compared(given, found, lambda s, p: stacked(given.made_shares(p)), feeds)
+    return _judged(given, "share", "warp.shares", *compared, feeds)
+
+
 def row_grids(given: Inputs) -> Judgement | None:
     """The grids of the two rows."""
-    return _points(given, "warp.row_grids", lambda s, p: stacked(given.made_row_grids(p)))
+    return _points(given, "warp.row_grids", lambda s, p: stacked(given.made_row_grids(s, p)))
 
 
 def rows(given: Inputs) -> Judgement | None:

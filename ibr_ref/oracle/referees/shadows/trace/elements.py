@@ -5,15 +5,16 @@ from __future__ import annotations
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.shadows import replay_maps
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
-from ibr_ref.oracle.referees.shadows.trace.maps import control, map_texel, position
+from ibr_ref.oracle.referees.shadows.trace.maps import control, depth, map_texel, position
 from ibr_ref.oracle.referees.shadows.trace.picture import pixel
-from ibr_ref.oracle.referees.shadows.trace.warp import grid_point, place, warped_texel
+from ibr_ref.oracle.referees.shadows.trace.warp import grid_point, paced, place, warped_texel
 
 STEPS = {
-    "maps": (replay_maps.positions, replay_maps.images),
+    "maps": (replay_maps.positions, replay_maps.depths, replay_maps.images),
     "controls": (replay_maps.controls,),
     "warp": (
         replay_maps.spots,
+        replay_maps.shares,
         replay_maps.row_grids,
         replay_maps.rows,
         replay_maps.grids,
@@ -38,12 +39,16 @@ def trace(given: Inputs, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
     array = stage if part else _array(given, stage, index)
     if array == "maps.positions":
         return position(given, index)
+    if array == "maps.depths":
+        return depth(given, index)
     if array == "maps.image" or (array == "warp.image" and given.direct):
         return map_texel(given, array, index)
     if array == "controls":
         return control(given, index)
     if array in ("warp.cell", "warp.fraction"):
         return place(given, index)
+    if array == "warp.shares":
+        return paced(given, index)
     if array in ("warp.row_grids", "warp.grid"):
         return grid_point(given, array, index)
     return warped_texel(given, array, index)

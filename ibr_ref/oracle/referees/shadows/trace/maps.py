@@ -30,6 +30,20 @@ def position(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     return [*rows, number("position x, y", lines, None if own is None else own[j, i], array="maps.positions")]
 
 
+def depth(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
+    """Map (j, i): how far before the light the caster's middle is."""
+    own = given.own("maps.depths", sampled=False)
+    low, high = np.asarray(given.case.scene.caster.bounds).tolist()
+    return [
+        told("the caster's box, from", ", ".join(f"{n:.9g}" for n in low)),
+        told("to", ", ".join(f"{n:.9g}" for n in high)),
+        number("offset of the map", [line[n] for line, n in zip(given.lines, index[::-1], strict=True)]),
+        number(
+            "depth of its middle along the view axis", given.made_depths[index], None if own is None else own[index]
+        ),
+    ]
+
+
 def control(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     """Point (j, i, r, c)."""
     own = given.own("controls", sampled=False)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact
+from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.rows import compared, number, told
@@ -54,6 +54,22 @@ def _spot(
     return max(made, key=lambda each: int(each[1].allows(own[sample]).sum()))
 
 
+def paced(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
+    """A projective fraction; index: sample, if there are more, and upper row, lower row, or between them."""
+    sample, (which,) = _split(given, index)
+    x, y = given.places(sample)[0]
+    corners = [[given.depths[y.cell + k, x.cell + n] for n in range(2)] for k in range(2)]
+    ends = corners[which] if which < 2 else [lerp(row[0], row[1], x.fraction) for row in corners]
+    own = given.own("warp.shares")
+    return [
+        number("fraction", x.fraction if which < 2 else y.fraction),
+        number("depths w0, w1", ends),
+        number(
+            "share", given.made_shares((x, y))[which], None if own is None else own[sample, which], array="warp.shares"
+        ),
+    ]
+
+
 def _split(given: Inputs, index: tuple[int, ...]) -> tuple[int, tuple[int, ...]]:
     return (index[0], index[1:]) if given.count > 1 else (0, index)
 
@@ -65,14 +81,14 @@ def grid_point(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceR
     found = None if own is None else own[(sample, *rest)]
     if array == "warp.grid":
         spot, made = _spot(given, sample, own, given.made_grid)
-        ends, share = given.row_grids(sample, spot), spot[1].fraction
+        ends, share = given.row_grids(sample, spot), given.shares(sample, spot)[2]
         names = ("row grid 0", "row grid 1")
     else:
         row, *rest_of = rest
         rest = tuple(rest_of)
-        (x, y), both = _spot(given, sample, own, lambda _, place: stacked(given.made_row_grids(place)))
+        (x, y), both = _spot(given, sample, own, lambda n, place: stacked(given.made_row_grids(n, place)))
         ends = [given.controls[y.cell + row, x.cell + n] for n in range(2)]
-        share, made = x.fraction, both[row]
+        share, made = given.shares(sample, (x, y))[row], both[row]
         names = (f"grid of map {y.cell + row}, {x.cell}", f"grid of map {y.cell + row}, {x.cell + 1}")
     return [
         *(number(f"{name}: u, v", _point(end, rest)) for name, end in zip(names, ends, strict=True)),
@@ -94,13 +110,13 @@ def warped_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[Trac
         spot, made = _spot(given, sample, own, given.made_image)
         grids, rows = given.row_grids(sample, spot), given.rows(sample, spot)
         sources = [Source(row, grid) for row, grid in zip(rows, grids, strict=True)]
-        target, share = given.grid(sample, spot), spot[1].fraction
+        target, share = given.grid(sample, spot), given.shares(sample, spot)[2]
     else:
         row, *rest_of = rest
         rest = tuple(rest_of)
         spot, both = _spot(given, sample, own, lambda s, place: stacked(given.made_rows(s, place)))
         sources, made = given.sources(spot, row), both[row]
-        target, share = given.row_grids(sample, spot)[row], spot[0].fraction
+        target, share = given.row_grids(sample, spot)[row], given.shares(sample, spot)[row]
     lines = [number("fraction", share)]
     if given.nearest:
         half = share - exact(0.5, given.device)
