@@ -29,10 +29,11 @@ if TYPE_CHECKING:
     Method = str
 else:
     Method = options.choices("Method", ("all", *BENCHES), "What is measured.")
+ALL = Method("all")
 
 
 def command(
-    method: Annotated[Method, typer.Argument(help="The method to measure.")] = "all",
+    method: Annotated[Method, typer.Argument(help="The method to measure.")] = ALL,
     repeat: Annotated[
         int, typer.Option(parser=options.repeats, help="Frames of each kind, 1 to 1000; the best and the median count.")
     ] = 20,
@@ -52,7 +53,7 @@ def command(
     json_output.check_writable(json)
     aside = json_output.is_standard_output(json)
     figures: dict[str, list[dict[str, Any]]] = {}
-    for name in BENCHES if method == "all" else (method,):
+    for name in BENCHES if method == ALL else (method,):
         for what, rows, table in BENCHES[name].open().measured(repeat, msr):
             figures[what] = rows
             show(table, error=aside)

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     Method = str
 else:
     Method = options.choices("Method", SEARCHES, "Search for the hit.")
+PROTRUDED = Method("protruded")
 
 
 class Interval(StrEnum):
@@ -103,7 +104,7 @@ def command(
     faces: Annotated[FaceSet, typer.Option(help="Faces of the volume that are drawn.")] = FaceSet.auxiliary,
     method: Annotated[
         Method, typer.Option(help="Search for the hit; from relief on, systems to compare with: shapes sink, not rise.")
-    ] = "protruded",
+    ] = PROTRUDED,
     lod_bias: Annotated[
         float, typer.Option(parser=options.number, help="mcguire: level of the mip chain that heights come from.")
     ] = 1.0,
