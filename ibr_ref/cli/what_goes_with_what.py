@@ -7,6 +7,7 @@ the method, in `READ_BY`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -34,22 +35,35 @@ def always(*names: str) -> dict[str, Beside]:
     return dict.fromkeys(names, ALWAYS)
 
 
-@cache
 def table() -> dict[str, dict[str, Beside]]:
     """By command and parameter."""
+    return {command: rules(command) for command in _commands()}
+
+
+@cache
+def rules(command: str) -> dict[str, Beside]:
+    """Those of one command: a method's are imported for its own alone."""
+    return _commands()[command]()
+
+
+def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
+    return {
+        **{f"render {m.name}": m.command.open().goes_with for m in methods.records() if m.command is not None},
+        "export": _export,
+        "check": _check,
+        "demo": lambda: always("out"),
+        "bench": _bench,
+        "method": lambda: always("name"),
+        "reproduce": lambda: always("paper", "out", "again"),
+    }
+
+
+def _bench() -> dict[str, Beside]:
     benches = {method.name: method.bench.open() for method in methods.records() if method.bench is not None}
     of_photographs = tuple(name for name, bench in benches.items() if bench.READS_MSR)
     return {
-        **{f"render {m.name}": m.command.open().goes_with() for m in methods.records() if m.command is not None},
-        "export": _export(),
-        "check": _check(),
-        "demo": always("out"),
-        "bench": {
-            **always("method", "repeat", "json"),
-            "msr": Beside("photographs are splatted", {"method": ("all", *of_photographs)}),
-        },
-        "method": always("name"),
-        "reproduce": always("paper", "out", "again"),
+        **always("method", "repeat", "json"),
+        "msr": Beside("photographs are splatted", {"method": ("all", *of_photographs)}),
     }
 
 
