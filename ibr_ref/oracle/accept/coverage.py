@@ -10,14 +10,12 @@ sum |w'_i| |d_i|. So they differ by at most the gradient of the weights times th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded
-from ibr_ref.oracle.device import Device
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -28,23 +26,8 @@ RASTER = 256.0
 
 
 @dataclass(frozen=True, eq=False)
-class Covered:
-    """Pixels that one triangle may cover."""
-
-    triangle: int
-    rows: Ints
-    columns: Ints
-    certain: Bools
-    """Every legal device covers the pixel."""
-    weights: Floats
-    """(n, 3) E_i / (E_0 + E_1 + E_2) of the snapped triangle, as the reference has them (beyond an edge: extrapolated)."""
-    error: Floats
-    """(n,) by how much a legal device's weights may differ, each; inf for a triangle that may have no area."""
-
-
-@dataclass(frozen=True, eq=False)
 class Fragments:
-    """The same of many triangles, one after the other in their order."""
+    """Pixels that triangles may cover, one triangle after the other in their order."""
 
     triangle: Ints
     """(n,) growing."""
@@ -55,8 +38,11 @@ class Fragments:
     inside: Bools
     """(n, 3) the pixel is certainly inside edge i, the one opposite corner i."""
     certain: Bools
+    """(n,) every legal device covers the pixel."""
     weights: Floats
+    """(n, 3) E_i / (E_0 + E_1 + E_2) of the snapped triangle, as the reference has them (beyond an edge: extrapolated)."""
     error: Floats
+    """(n,) by how much a legal device's weights may differ, each; inf for a triangle that may have no area."""
     moved: Floats
     """(n,) how far, along each axis, the point that a device's weights belong to may lie from the pixel's centre."""
 
@@ -96,22 +82,6 @@ def snapped(x: Bounded) -> tuple[Floats, Floats]:
     # From steps = reference + d a coordinate that is off by e steps goes no farther than floor(|d| + e + 1/2).
     off = np.floor(np.abs(steps - reference) + RASTER * x.error + 0.5)
     return reference / RASTER, np.where(x.error > 0.0, off, 0.0) / RASTER
-
-
-def covered(x: Bounded, y: Bounded, width: int, height: int) -> Iterator[Covered]:
-    """For each triangle with corners x, y (T, 3), in window coordinates, the pixels that it may cover. NaN corners: none."""
-    found = fragments(x, y, width, height)
-    names, starts = np.unique(found.triangle, return_index=True)
-    for triangle, first, last in zip(names, starts, [*starts[1:], len(found.triangle)], strict=True):
-        piece = slice(first, last)
-        yield Covered(
-            int(triangle),
-            found.rows[piece],
-            found.columns[piece],
-            found.certain[piece],
-            found.weights[piece],
-            found.error[piece],
-        )
 
 
 def fragments(x: Bounded, y: Bounded, width: int, height: int) -> Fragments:
@@ -242,8 +212,3 @@ def _top_left(corners: Corners, a: int, b: int) -> Bools:
     """(T,) whether pixels on the edge a -> b of a triangle with E > 0 inside (y downwards) belong to it."""
     dx, dy = corners.x[:, b] - corners.x[:, a], corners.y[:, b] - corners.y[:, a]
     return np.asarray(((dy == 0.0) & (dx > 0.0)) | (dy < 0.0))
-
-
-def window_raster(device: Device) -> float:
-    """The step of the device's raster of window positions, in pixels."""
-    return 2.0**-device.subpixel_bits

@@ -11,9 +11,9 @@ from ibr_ref.contract import described, spelled
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.files.features import features
 from ibr_ref.oracle.files.fields import field_list, input_table
-from ibr_ref.oracle.referees.reads import READS
+from ibr_ref.oracle.referees.reads import reads_of
 from ibr_ref.oracle.schema import Document
-from ibr_ref.oracle.schema.stages import CONTRACTS
+from ibr_ref.oracle.schema.stages import contract_of
 from ibr_ref.pages import excerpt
 
 
@@ -32,7 +32,7 @@ def json_text(value: Any, indent: str = "") -> str:
 
 def _reads(document: Document, name: str) -> str:
     """Those that the case has: a map that is rendered directly is made of no grid."""
-    reads = READS[document.method]
+    reads = reads_of(document.method)
     there = {stage.name for stage in document.expected} | {stage.name.rpartition(".")[0] for stage in document.expected}
     return ", ".join(one for one in reads[name if name in reads else name.rpartition(".")[0]] if one in there) or "-"
 
@@ -95,7 +95,7 @@ def _expected(document: Document) -> str:
     """The table of the results, and the names of the margins."""
     results = [stage for stage in document.expected if stage.kind == "result"]
     margins = [f"`{stage.name}`" for stage in document.expected if stage.kind == "margin"]
-    contract = CONTRACTS[document.method]
+    contract = contract_of(document.method)
     left = {stage.name: spelled(described(contract, stage.name).discarded) for stage in results}
     more = any(left.values())
     lines = [
@@ -108,5 +108,6 @@ def _expected(document: Document) -> str:
     if more:
         lines += ["", '"own": a discarded fragment or point leaves there what any other has.']
     lines += ["", _JUDGED_ON]
-    lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
+    if margins:
+        lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
     return "\n".join(lines)
