@@ -6,6 +6,7 @@ import numpy as np
 
 from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.ports.faults import Variant
 
 Arrays = dict[str, np.ndarray]
 
@@ -18,6 +19,12 @@ def picture(arrays: Arrays) -> Arrays:
 def in_bytes(arrays: Arrays) -> Arrays:
     """The final colour as a PNG has it."""
     return {"color": color_bytes(np.nan_to_num(arrays["color"]))}
+
+
+def pictures(arrays: Arrays, variant: Variant) -> list[Arrays]:
+    """A picture in floats and one in bytes, with the normals or maps that a variant has made itself."""
+    own = {name: arrays[name] for name in variant.own}
+    return [picture(arrays) | own, (picture(arrays) if variant.policy.color_bits else in_bytes(arrays)) | own]
 
 
 def complaints(judgements: list[Judgement]) -> list[str]:

@@ -88,7 +88,8 @@ looked for.""".replace("NAMES", ", ".join(PROFILES))
 
 _JUDGED_ON = """An array is judged on those of yours that it is computed from; one that you do not hand in is made of what it
 reads in turn, and at last of the case. Normals and the nine maps, which a case hands over, you may also make yourself and go
-on with, if you hand them in. No case depends on what the APIs leave undefined, such as pow(0, 0) or normalize(0)."""
+on with, if you hand them in, beside a picture too: without them it is judged with those of the case. No case depends on what
+the APIs leave undefined, such as pow(0, 0) or normalize(0)."""
 
 
 def _expected(document: Document) -> str:

@@ -31,6 +31,8 @@ class Variant:
     """The tightest device profile that explains it."""
     port: type[PlainPort] | None = None
     """Where it also computes in another order; None: the plain port."""
+    own: tuple[str, ...] = ()
+    """Of what the case hands over, the arrays that it makes itself and goes on with: handed in, beside a picture too."""
 
 
 @dataclass(frozen=True)

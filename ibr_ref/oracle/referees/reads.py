@@ -8,6 +8,7 @@ stage reads them.
 Two inputs are the case's and may be the port's: splatting's 8-bit normals (`atlas.normal`) and the nine maps of shadows with
 their positions. The case hands them over, and a port may make its own. It may go on with either, but for all elements of an
 array with one of the two; and with its own only where it hands them in: what it does not hand in is the case's.
+So a picture without them is judged with the case's: any legal code in each texel would let through what is of both.
 """
 
 from __future__ import annotations

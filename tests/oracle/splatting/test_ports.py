@@ -10,9 +10,10 @@ import pytest
 from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.faults import Mutant, Variant
 from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port
+from ibr_ref.oracle.ports.splatting.variants import OwnNormals
 from tests.oracle.devices import random_policy
-from tests.oracle.judgements import complaints, first_wrong, in_bytes, picture
-from tests.oracle.splatting.judged import SMALL, case, drawn, image, stages
+from tests.oracle.judgements import complaints, first_wrong, picture, pictures
+from tests.oracle.splatting.judged import SMALL, case, drawn, image, reference, stages
 
 TELLING = ("lamp", "shelves", "discs", "among", "terraces", "dust", "ball", "quads", "sprites")
 """The small cases, those in which most bugs show first."""
@@ -27,12 +28,8 @@ HIDDEN = 0.15
 @pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.name)
 def test_no_legal_variant_is_accused(variant: Variant, name: str) -> None:
     arrays = drawn(name, variant.policy, variant.port or Port)
-    judged = [
-        *stages(name, arrays, variant.profile),
-        image(name, picture(arrays), variant.profile),
-        image(name, picture(arrays) if variant.policy.color_bits else in_bytes(arrays), variant.profile),
-    ]
-    assert complaints(judged) == []
+    alone = [image(name, handed, variant.profile) for handed in pictures(arrays, variant)]
+    assert complaints([*stages(name, arrays, variant.profile), *alone]) == []
 
 
 @pytest.mark.parametrize("variant", VARIANTS[:3], ids=lambda v: v.name)
@@ -40,6 +37,30 @@ def test_no_legal_variant_is_accused_in_real_size(variant: Variant) -> None:
     name = "splatting-kettle"
     arrays = drawn(name, variant.policy, variant.port or Port)
     assert complaints([*stages(name, arrays, variant.profile), image(name, picture(arrays), variant.profile)]) == []
+
+
+@pytest.mark.parametrize("name", ["splatting-sprites", "splatting-quads", "splatting-dust"])
+def test_own_normals_are_handed_in_beside_the_picture(name: str) -> None:
+    """They are a code beside the case's here and there; whoever keeps them to himself is judged with the case's."""
+    arrays = drawn(name, port=OwnNormals)
+    of_the_case = {"atlas.normal": reference(name)["atlas.normal"]}
+    assert complaints([image(name, picture(arrays) | {"atlas.normal": arrays["atlas.normal"]})]) == []
+    assert image(name, picture(arrays)).wrong.any()
+    assert image(name, picture(arrays) | of_the_case).wrong.any(), "lit with others than those handed in"
+
+
+def test_wrong_normals_explain_no_picture() -> None:
+    """Handed in beside a picture that is lit with them."""
+    name = "splatting-dust"
+    mutants = [m for m in MUTANTS if m.stage == "normals"]
+    shown = 0
+    for mutant in mutants:
+        arrays = drawn(name, port=type("Own", (OwnNormals,), {"normals": mutant.port.normals}))  # type: ignore[attr-defined]
+        own = {"atlas.normal": arrays["atlas.normal"]}
+        if image(name, picture(arrays)).wrong.any() and stages(name, own)[0].wrong.any():
+            shown += 1
+            assert image(name, picture(arrays) | own).wrong.any(), mutant.name
+    assert shown >= 3
 
 
 @cache

@@ -147,6 +147,9 @@ class OwnMaps(Port):
         return self.nine_maps(self.positions())
 
 
+HANDED_OVER = ("maps.positions", "maps.image")
+"""The nine maps, which the case hands over."""
+
 _VULKAN = Policy(reciprocal=True, weight_bits=8, subpixel_rounding="up", depth_bits=24)
 _GL = Policy(
     fused=True, reciprocal=True, jitter=2, seed=4, weight_bits=8, weight_rounding="down", subpixel_rounding="down",
@@ -170,8 +173,8 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("mean of samples", Policy(), "ieee32", MeanOfSamples),
     Variant("shade by sum", Policy(fused=True), "ieee32", ShadeBySum),
     Variant("direct from the centre", Policy(), "ieee32", DirectFromCentre),
-    Variant("own maps", Policy(), "ieee32", OwnMaps),
-    Variant("own maps, subpixels up", Policy(subpixel_rounding="up"), "vulkan", OwnMaps),
+    Variant("own maps", Policy(), "ieee32", OwnMaps, HANDED_OVER),
+    Variant("own maps, subpixels up", Policy(subpixel_rounding="up"), "vulkan", OwnMaps, HANDED_OVER),
     Variant("truncated", Policy(truncated=True), "d3d11"),
     Variant("truncated, fused, 8-bit weights", Policy(truncated=True, fused=True, weight_bits=8), "d3d11"),
     Variant("quotients off by 2 ULP", Policy(loose=2, seed=1), "vulkan"),

@@ -46,9 +46,10 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("whole-codes", _FLOAT32, "ieee32", with_stage(orders.WholeCodes)),
     Variant("pow", Policy(intrinsic_power=True), "ieee32"),
     Variant("pow-loose", Policy(intrinsic_power=True, loose=2, seed=3), "vulkan"),
-    Variant("own-normals", _FLOAT32, "ieee32", OwnNormals),
-    Variant("normals-as-floats", _FLOAT32, "ieee32", with_stage(orders.FloatCodes)),
+    Variant("own-normals", _FLOAT32, "ieee32", OwnNormals, ("atlas.normal",)),
     Variant("truncating", Policy(truncated=True), "d3d11"),
+    # Rounded correctly, 255 (k / 255) is k for every byte, and the port the plain one.
+    Variant("normals-as-floats", Policy(truncated=True), "d3d11", with_stage(orders.FloatCodes)),
     Variant("reciprocals", Policy(reciprocal=True), "vulkan"),
     Variant("loose-quotients-1", Policy(loose=2, seed=1), "vulkan"),
     Variant("loose-quotients-2", Policy(loose=2, seed=2), "vulkan"),
