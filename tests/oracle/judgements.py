@@ -23,7 +23,7 @@ def in_bytes(arrays: Arrays) -> Arrays:
 
 def pictures(arrays: Arrays, variant: Variant) -> list[Arrays]:
     """A picture in floats and one in bytes, with the normals or maps that a variant has made itself."""
-    own = {name: arrays[name] for name in variant.own}
+    own = {name: arrays[name] for name in variant.own if name in arrays}  # method "direct" warps no maps
     return [picture(arrays) | own, (picture(arrays) if variant.policy.color_bits else in_bytes(arrays)) | own]
 
 
