@@ -41,7 +41,7 @@ NOTHING: dict[str, float] = {
     "shade.normal": np.nan,
     "shade.lit": 0,
 }
-"""What arrays hold where there is no fragment, or, of shade, none that was kept (displacement.md, "Stages")."""
+"""What arrays hold where there is no fragment, or, of shade, none that was kept (displacement/method.md, "Arrays")."""
 
 
 @dataclass(frozen=True)
