@@ -111,7 +111,7 @@ BROKEN = {
     "the corners of the mesh exchanged": (
         "shadows-bent",
         "shadows_warp.vert",
-        ("vec2 second = lerp(in_c, in_d, fraction.x);", "vec2 second = lerp(in_d, in_c, fraction.x);"),
+        ("vec2 second = lerp(in_c, in_d, shares.y);", "vec2 second = lerp(in_d, in_c, shares.y);"),
         "warp",
     ),
     "the size as a radius": (

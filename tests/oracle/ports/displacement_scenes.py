@@ -183,6 +183,17 @@ def lamp() -> tuple[Scene, Params]:
     return Scene(polygons=[models.box()], camera=camera, light=light), Params(linear_steps=20, shadow_steps=12)
 
 
+def rim() -> tuple[Scene, Params]:
+    """A ridge along the border of the map, seen at a grazing angle against a low sun; ambient between two bytes."""
+    heights = 0.25 * hills(40, 48)
+    heights[:, -3:] = 0.83
+    heights[-4:, :] = 0.57
+    camera = looking(eye=(-0.1, -0.95, 0.25), target=(1.35, -0.3, 0.2), vertical_fov=28.0)
+    light = Light(direction=(1.0, 0.25, 0.6), ambient=0.23, diffuse=0.7)
+    scene = Scene(polygons=[sheared(height_map=heights)], camera=camera, light=light)
+    return scene, Params(linear_steps=40, binary_steps=2, shadow_steps=2)
+
+
 def dusk() -> tuple[Scene, Params]:
     """A sun below the horizon of the polygon."""
     camera = looking(eye=(1.0, -1.2, 0.9), target=(0.0, 0.0, 0.0), vertical_fov=32.0)
@@ -208,6 +219,7 @@ SCENES: dict[str, Callable[[], tuple[Scene, Params]]] = {
         coincident,
         from_above,
         lamp,
+        rim,
         dusk,
     )
 }
@@ -281,6 +293,8 @@ SHOWN_IN: dict[str, tuple[str, ...]] = {
     "crossing": ("ambient off by 2 %", "first fragment wins", "depth offset"),
     # A lamp inside the volume, colours above 1.
     "lamp": ("no clamp", "shadows from behind the lamp"),
+    # Grazing lines of sight, a shadow from the border, ambient that no byte holds.
+    "rim": ("grazing rays discarded", "ambient as a byte", "one shadow sample more"),
     "facing": ("rays that go down are kept",),
     "street": ("search from behind the eye",),
     "beside": ("entry through the top only",),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -189,6 +189,26 @@ def twice() -> Case:
     return case(scene(receivers=[first, moved(first, (0.0, 0.0, 0.0), color=(0.1, 0.1, 0.9)), wall()]), params())
 
 
+def listed() -> Case:
+    """Four samples that the scene lists itself, in no order, the light's centre third; ambient between two bytes."""
+    lamp = light()
+    moves = np.array([(0.7, -0.5), (-0.3, 0.6), (0.0, 0.0), (-0.8, -0.4)])
+    return case(scene(light=lamp, ambient=0.23), params(light_samples=lamp.arrays[0] + moves @ lamp.arrays[1]))
+
+
+def verge() -> Case:
+    """The narrow light of `beside`: depths of 8 bits cross the map's border; four comparisons, often of equals."""
+    return case(beside().scene, params(method="direct", content="depth", pcf=True, quantize=8, bias=4e-3))
+
+
+def beyond() -> Case:
+    """Depths without a bias, a view of the floor of which a corner is beyond the light's far plane: both sides are 1."""
+    view = camera(eye=(-0.9, -0.7, -0.35), target=(0.9, 0.6, -1.0), vertical_fov=60.0)
+    around = low_light()
+    around = replace(around, camera=view, light=replace(around.light, far=2.15))
+    return case(around, params(method="direct", content="depth", bias=0.0))
+
+
 def grazing() -> Case:
     """A wide view: walls that the view axis and the line of sight see from different sides."""
     view = camera(eye=(0.9, -1.6, 0.6), target=(0.9, 0.5, -0.6), vertical_fov=75.0)
@@ -213,12 +233,16 @@ CASES: dict[str, Callable[[], Case]] = {
         filtered,
         coarse,
         twice,
+        listed,
+        verge,
+        beyond,
         grazing,
     )
 }
 
 
 ELSEWHERE = {
+    "maps-listed-first-is-centre": "listed",
     "maps-middle-not-clamped": "oblique",
     "maps-any-sample": "nearest",
     "maps-coverage-over-k2-1": "nearest",
@@ -226,6 +250,7 @@ ELSEWHERE = {
     "maps-depth-half-floats": "deep",
     "maps-linear-depth": "deep",
     "maps-unit-axes": "oblique",
+    "warp-listed-by-distance": "listed",
     "warp-pace-even": "paced",
     "warp-pace-reversed": "paced",
     "warp-pace-of-the-upper-row": "paced",
@@ -256,6 +281,10 @@ ELSEWHERE = {
     "project-weights-exchanged": "filtered",
     "project-pcf-of-depths": "filtered",
     "project-pcf-three-taps": "filtered",
+    "project-pcf-last-texel": "verge",
+    "project-pcf-or-equal": "verge",
+    "project-compare-ge": "beyond",
+    "resolve-ambient-byte": "listed",
     "resolve-turned-by-view-axis": "grazing",
     "resolve-lequal": "twice",
 }

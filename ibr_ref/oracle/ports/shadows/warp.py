@@ -71,12 +71,13 @@ class Warp(Lights):
         return bool(self.params.interpolation == "projective")
 
     def caster_depths(self) -> Floats:
-        """(3, 3) of the middle of the caster's box along the light's view axis, in the maps that the case gives."""
+        """(3, 3) of the middle of the caster's box along the light's view axis, at the lines of the maps."""
         vertices = self.ops.number(self.scene.caster.vertices)
         middle = self.ops.multiply(self.ops.add(vertices.min(axis=0), vertices.max(axis=0)), 0.5)
         backwards, depths = self.light_view(self.centre)[2], np.empty((3, 3))
+        xs, ys = self.lines()
         for j, i in np.ndindex(3, 3):
-            offset = self.ops.number(self.inputs["maps"].positions[j, i])
+            offset = xs[i], ys[j]
             at = self.ops.sum([middle, *(self.ops.multiply(offset[k], self.axes[k]) for k in range(2))])
             depths[j, i] = -self.ops.dot([*at, 1.0], list(backwards))
         return depths

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import chain
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
@@ -14,8 +13,13 @@ from ibr_ref.oracle.referees.shadows.inputs import HANDED_OVER, Inputs
 from ibr_ref.oracle.referees.shadows.parameters import parameters
 from ibr_ref.oracle.referees.shadows.trace import trace
 
-_MADE = (replay_maps.positions, replay_maps.depths, replay_maps.images, replay_maps.controls)
+_MADE = (replay_maps.positions, replay_maps.images, replay_maps.controls)
+"""Of what the case hands over."""
 _JUDGES = (
+    replay_maps.positions,
+    replay_maps.depths,
+    replay_maps.images,
+    replay_maps.controls,
     replay_maps.spots,
     replay_maps.shares,
     replay_maps.row_grids,
@@ -54,7 +58,7 @@ class ShadowsReferee:
     ) -> list[Judgement]:
         """In order; a stage of several kinds of elements (cells, grids, texels) has a judgement for each."""
         given = Inputs(case, device, handed, self._of(case, device))
-        found = chain((judge(given) for judge in _MADE), (_with_either_maps(judge, given) for judge in _JUDGES))
+        found = (_with_either_maps(judge, given) for judge in _JUDGES)
         return up_to((judgement for judgement in found if judgement is not None), first_wrong=to_first_wrong)
 
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
