@@ -84,7 +84,7 @@ DAMAGE: list[tuple[str, Any, str]] = [
     ("content", np.array("colour"), "content"),
     ("samples", np.array(99), "samples"),
     ("samples", np.zeros(3), "samples"),
-    ("source", np.array([None]), "pickle"),
+    ("source", np.array([None]), "cannot be decoded"),  # objects: only pickles hold them
 ]
 
 
