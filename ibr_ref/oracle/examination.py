@@ -12,10 +12,10 @@ from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.conventions import conventions
 from ibr_ref.oracle.device import PROFILES, Device
-from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.judgement import Explains, Handed, Judgement
 from ibr_ref.oracle.referees import referee
 from ibr_ref.oracle.trials import Trial, judge, tightest
-from ibr_ref.oracle.verdict import Bias, Box, Outcome, StageVerdict, TraceStep, Verdict, Witness
+from ibr_ref.oracle.verdict import Bias, Box, Cause, Outcome, StageVerdict, TraceStep, Verdict, Witness
 from ibr_ref.scene import checks
 
 
@@ -77,6 +77,7 @@ def examine(case: Case, handed: Handed, *, profile: str | None = None, problems:
     if wrong is not None:
         fields["first_wrong_stage"] = wrong.stage
         fields["witness"] = _witness(case, trial.device, handed, wrong)
+        fields["causes"] = _causes(case, trial.device, handed, wrong)
         if image is not None and image.wrong.any():
             fields["conventions"] = conventions(case, trial.device, handed, int(image.wrong.sum()))
     else:
@@ -144,6 +145,12 @@ def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -
             for r in rows
         ),
     )
+
+
+def _causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...] | None:
+    """Of the methods whose known bugs are programs."""
+    judge_of = referee(case.method)
+    return judge_of.causes(case, device, handed, wrong) if isinstance(judge_of, Explains) else None
 
 
 def _expected(case: Case, array: str) -> Any:

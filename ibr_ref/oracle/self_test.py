@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from typing import Any
 
 import numpy as np
 
@@ -13,8 +14,8 @@ from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.faults import Mutant, PlainPort, Variant
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.faults.kinds import Mutant, PlainPort, Variant
 from ibr_ref.oracle.trials import judge
 
 MUTANT_PROFILE = "ieee32"
@@ -68,7 +69,7 @@ def port_output(case: Case, port: type[PlainPort], variant: Variant | None = Non
 
 def try_variants(method: str) -> Iterator[VariantResult]:
     """Every variant of a method on all its cases, by the profile that it states."""
-    module = import_module(f"ibr_ref.oracle.ports.{method}")
+    module = catalogue(method)
     cases = [build(name) for name in names(method)]
     for variant in module.VARIANTS:
         accused, pixels = [], 0
@@ -95,7 +96,7 @@ def try_variants(method: str) -> Iterator[VariantResult]:
 
 def try_mutants(method: str, *, kinds: Sequence[str]) -> Iterator[MutantResult]:
     """Every mutant of a method, on its cases of some kinds."""
-    module = import_module(f"ibr_ref.oracle.ports.{method}")
+    module = catalogue(method)
     cases = [case for case in map(build, names(method)) if case.kind in kinds]
     for mutant in module.MUTANTS:
         yield _try_mutant(method, mutant, cases)
@@ -131,7 +132,12 @@ def _try_mutant(method: str, mutant: Mutant, cases: Sequence[Case]) -> MutantRes
     )
 
 
+def catalogue(method: str) -> Any:
+    """A method's `Port`, its VARIANTS and its MUTANTS."""
+    return import_module(f"ibr_ref.oracle.{'faults' if method == 'displacement' else 'ports'}.{method}")
+
+
 def size(methods: Sequence[str]) -> int:
     """How many variants and mutants the methods have."""
-    modules = [import_module(f"ibr_ref.oracle.ports.{method}") for method in methods]
+    modules = [catalogue(method) for method in methods]
     return sum(len(module.VARIANTS) + len(module.MUTANTS) for module in modules)

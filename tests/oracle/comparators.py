@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.cases import METHODS, Case, build, names
-from ibr_ref.oracle.ports.arithmetic import Policy
+from ibr_ref.oracle.arithmetic.device import Policy
 
 Image = NDArray[np.uint8]
 Comparator = Callable[[Image, Image], bool]

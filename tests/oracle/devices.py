@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.ports.arithmetic import Policy
+from ibr_ref.oracle.arithmetic.device import Policy
 
 
 def random_policy(random: np.random.Generator, profile: str | None = None) -> tuple[Policy, str]:

@@ -5,8 +5,8 @@ Splatting filters nothing and interpolates nothing: 8-bit weights and varyings o
 
 from __future__ import annotations
 
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.faults import Variant
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.ports.splatting import orders
 from ibr_ref.oracle.ports.splatting.port import Port, with_stage
 
