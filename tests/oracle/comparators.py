@@ -15,8 +15,8 @@ from importlib.util import find_spec
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.cases import METHODS, Case, build, names
 from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.cases import METHODS, Case, build, names
 
 Image = NDArray[np.uint8]
 Comparator = Callable[[Image, Image], bool]

@@ -193,9 +193,7 @@ class Bounds(Decisions):
 
     def beyond(self, x: Number, least: float, up: Any) -> Number:
         """What is decided to be >= `least` (`up`), or <= -`least`."""
-        above, below = (
-            self.rising(f, x) for f in (lambda v: np.maximum(v, least), lambda v: np.minimum(v, -least))
-        )
+        above, below = (self.rising(f, x) for f in (lambda v: np.maximum(v, least), lambda v: np.minimum(v, -least)))
         return self.where(up, above, below)
 
     def rising(self, f: Callable[[Any], Any], x: Any) -> Number:
@@ -219,7 +217,9 @@ class Bounds(Decisions):
         sign = np.where(x.value < 0.0, -1.0, 1.0)
         sure = np.abs(x.value) >= x.deviation
         error = np.where(sure, x.error, x.deviation)
-        return Number(self, np.abs(x.value), error, {k: np.where(sure, sign * s, 0.0) for k, s in x.slopes.items()}, x.lane)
+        return Number(
+            self, np.abs(x.value), error, {k: np.where(sure, sign * s, 0.0) for k, s in x.slopes.items()}, x.lane
+        )
 
     def negative(self, x: Any) -> Number:
         """-x."""

@@ -109,7 +109,7 @@ class Number(_Speaks):
     def __getitem__(self, index: Any) -> Number:
         """Rows; along other axes the lane stays."""
         rows = index[0] if isinstance(index, tuple) else index
-        whole = isinstance(rows, slice) and rows == slice(None) or rows is Ellipsis
+        whole = (isinstance(rows, slice) and rows == slice(None)) or rows is Ellipsis
         lane = self.lane if self.lane is None or whole else self.lane[rows]
         return self.each(lambda x: x[index], lane)
 
@@ -120,7 +120,7 @@ class Number(_Speaks):
         return (self[i] for i in range(len(self.value)))
 
     @property
-    def T(self) -> list[Number]:
+    def T(self) -> list[Number]:  # noqa: N802 as NumPy has it
         """Components of (n, c)."""
         return [self.each(lambda x, c=c: x[..., c], self.lane) for c in range(self.shape[-1])]
 

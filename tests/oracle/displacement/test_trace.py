@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from tests.oracle.displacement.drawn import REFEREE, SMALL, Arrays, case, draw, reference
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.oracle.faults.kinds import Mutant
+from ibr_ref.oracle.programs.displacement.port import Port
 
 
 class Bugs:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.oracle.faults.displacement.bugs import Bugs
 from ibr_ref.oracle.programs.displacement.case import Bools, Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
-from ibr_ref.oracle.faults.displacement.bugs import Bugs
 from ibr_ref.oracle.programs.displacement.port import Port
 
 MARCH = Bugs("march")

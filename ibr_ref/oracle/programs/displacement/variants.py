@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats, Policy
+from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.programs.displacement.case import Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.port import Port
-from ibr_ref.oracle.faults.kinds import Variant
 
 # --- Other orders of operations --------------------------------------------------------------------------------------
 

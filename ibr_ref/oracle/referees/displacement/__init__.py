@@ -15,8 +15,8 @@ from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow, up_to
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.referees.displacement import image
-from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.cause import causes
+from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.parameters import parameters
 from ibr_ref.oracle.referees.displacement.replay import Port
 from ibr_ref.oracle.referees.displacement.stages import Stages

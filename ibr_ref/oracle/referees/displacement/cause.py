@@ -15,7 +15,6 @@ from ibr_ref.oracle.arithmetic.number import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.displacement import MUTANTS
-from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.displacement.image import Shown, searched
 from ibr_ref.oracle.referees.displacement.model import Model
@@ -65,9 +64,7 @@ def _samples(off: Bools) -> list[Bools | None]:
     return [*parts, None]
 
 
-def _leaves(
-    case: Case, device: Device, handed: Handed, stage: str, kind: type[Any], among: Bools | None
-) -> int:
+def _leaves(case: Case, device: Device, handed: Handed, stage: str, kind: type[Any], among: Bools | None) -> int:
     """How many elements a program does not explain, of those `among`."""
     model = Model(case, device, kind)
     with np.errstate(all="ignore"):

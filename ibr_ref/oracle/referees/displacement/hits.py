@@ -181,6 +181,4 @@ def winners_of(model: Model, hits: Hits) -> Winners:
     """Which outcomes their pixels may show: the depth test between polygons."""
     camera = model.case.scene.camera
     owner = hits.pixel * len(model.patches) + hits.polygon
-    return winners(
-        hits.pixel, hits.certain, hits.depth.low, hits.depth.high, camera.width * camera.height, owner=owner
-    )
+    return winners(hits.pixel, hits.certain, hits.depth.low, hits.depth.high, camera.width * camera.height, owner=owner)

@@ -1,4 +1,4 @@
-"""The final picture, judged from the case alone: is there a part of a fragment's box that shows what the port has?
+"""The final picture, judged from the case alone: whether a part of a fragment's box shows what the port has.
 
 The whole box first, then parts of it: a part whose results exclude the port's colour or depth is dropped, what they leave of
 it is kept, and split where the results are no planes over it.

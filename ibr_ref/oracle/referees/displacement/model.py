@@ -96,7 +96,6 @@ class Model:
         depth = self.program.window_depth(self.patches[polygon], hit, face_depth)
         return self.machine.where(hit_index >= 0, depth, np.inf)
 
-
     def written(self, color: Vector) -> Vector:
         """Colours as the frame buffer holds them."""
         return list(self.machine.of(self.program.written(np.stack(np.broadcast_arrays(*color), axis=-1))).T)

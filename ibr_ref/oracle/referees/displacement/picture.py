@@ -23,7 +23,6 @@ from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.referees.displacement.model import AXES, CHUNK, Model, Raster
 from ibr_ref.oracle.referees.displacement.rows import Rows
 
-
 SMALLEST = 2.0**-14
 """Pixels: a box no larger has no parts; corners that are not snapped elsewhere move by their roundings only."""
 
@@ -50,7 +49,9 @@ class Boxes:
     def parts(self) -> Boxes:
         """Four quarters each."""
         signs = [np.array([a, b]) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
-        return joined_boxes([replace(self, middle=self.middle + 0.5 * s * self.half, half=0.5 * self.half) for s in signs])
+        return joined_boxes(
+            [replace(self, middle=self.middle + 0.5 * s * self.half, half=0.5 * self.half) for s in signs]
+        )
 
 
 def joined_boxes(parts: list[Boxes]) -> Boxes:
@@ -212,7 +213,9 @@ class Picture:
         lost = self.lost
         sure[self.fragments.pixel[lost], self.fragments.polygon[lost]] = False
         farthest[~sure | ~np.isfinite(farthest)] = np.inf
-        others = [farthest[:, [k for k in range(count) if k != own]].min(axis=1, initial=np.inf) for own in range(count)]
+        others = [
+            farthest[:, [k for k in range(count) if k != own]].min(axis=1, initial=np.inf) for own in range(count)
+        ]
         return np.stack(others, axis=1)
 
     def shown(self, looks: Looks) -> Bools:

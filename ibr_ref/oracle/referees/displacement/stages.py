@@ -95,7 +95,9 @@ class Stages:
         lost = self._marched[1] if self._marches else np.zeros(0, np.int64)
         if stage == "shade":
             pixel = surfaces.pixel[shown]
-            return _picture(port, stage, port.names("march"), _shade(port, self._hits, self._shades, pixel, color, lost))
+            return _picture(
+                port, stage, port.names("march"), _shade(port, self._hits, self._shades, pixel, color, lost)
+            )
         verdict = _resolve(port, self._hits, surfaces.hit[shown], color, clean, lost)
         return _picture(port, stage, port.names("march") + port.names("shade"), verdict)
 
@@ -117,7 +119,7 @@ class Stages:
     @property
     def _marches(self) -> bool:
         """Whether anything hangs on the program's own march."""
-        return bool(self.port.names("march")) and self.port.among is None or not self.port.whole_hits
+        return (bool(self.port.names("march")) and self.port.among is None) or not self.port.whole_hits
 
     @cached_property
     def _hits(self) -> Hits:

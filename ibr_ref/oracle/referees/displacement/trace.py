@@ -64,7 +64,9 @@ def _vector(values: Sequence[float] | Floats) -> str:
 def _row(step: str, legal: Number | Vector, found: Any) -> TraceRow:
     """A result, a number or components, of one element, and what the port has of it."""
     parts = list(legal) if isinstance(legal, list) else [legal]
-    value, error = (np.concatenate([np.ravel(get(x)) for x in parts]) for get in (lambda x: x.value, lambda x: x.deviation))
+    value, error = (
+        np.concatenate([np.ravel(get(x)) for x in parts]) for get in (lambda x: x.value, lambda x: x.deviation)
+    )
     found = None if found is None else np.ravel(found)
     note = ""
     if found is not None:
@@ -221,9 +223,7 @@ def _shade(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
     for i in range(len(shades)):
         for name, legal in (("shade.albedo", shades.albedo), ("shade.normal", shades.normal)):
             yield _row(name, _one(legal, i), port.floats(name)[pixel] if name in port.handed else None)
-        yield TraceRow(
-            step="shade.lit", reference=str(bool(shades.lit[i])), port=_handed(port, pixel, ("shade.lit",))
-        )
+        yield TraceRow(step="shade.lit", reference=str(bool(shades.lit[i])), port=_handed(port, pixel, ("shade.lit",)))
     _, color = lighted(model, hits, light_input(port, hits, shades))
     for i in range(len(color[0])):
         yield _row("colour", _one(color, i), _color(port, pixel))
