@@ -6,12 +6,18 @@ exit code 2, never a traceback.
 
 from __future__ import annotations
 
+import os
 import sys
+import warnings
 from typing import Annotated
 
 import typer
 
-from ibr_ref.cli import bench, check, demo, displacement, export, reproduce, shadows, splatting
+from ibr_ref.cli import bench, check, demo, displacement, export, method, reproduce, shadows, splatting
+from ibr_ref.cli.command import Command
+
+_BROKEN_PIPE = 141
+"""The exit code that a shell gives to a command whose reader has gone; no verdict has it."""
 
 app = typer.Typer(
     name="ibr-ref",
@@ -22,15 +28,16 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 render_app = typer.Typer(no_args_is_help=True, help="Render your own input with one of the methods.")
-render_app.command("displacement", epilog=displacement.EXAMPLES)(displacement.command)
-render_app.command("splatting", epilog=splatting.EXAMPLES)(splatting.command)
-render_app.command("shadows", epilog=shadows.EXAMPLES)(shadows.command)
+render_app.command("displacement", cls=Command, epilog=displacement.EXAMPLES)(displacement.command)
+render_app.command("splatting", cls=Command, epilog=splatting.EXAMPLES)(splatting.command)
+render_app.command("shadows", cls=Command, epilog=shadows.EXAMPLES)(shadows.command)
 app.add_typer(render_app, name="render")
-app.command("demo", epilog=demo.EXAMPLES)(demo.command)
-app.command("export", epilog=export.EXAMPLES)(export.command)
-app.command("check", epilog=check.EXAMPLES)(check.command)
-app.command("bench", epilog=bench.EXAMPLES)(bench.command)
-app.command("reproduce", epilog=reproduce.EXAMPLES)(reproduce.command)
+app.command("demo", cls=Command, epilog=demo.EXAMPLES)(demo.command)
+app.command("method", cls=Command, epilog=method.EXAMPLES)(method.command)
+app.command("export", cls=Command, epilog=export.EXAMPLES)(export.command)
+app.command("check", cls=Command, epilog=check.EXAMPLES)(check.command)
+app.command("bench", cls=Command, epilog=bench.EXAMPLES)(bench.command)
+app.command("reproduce", cls=Command, epilog=reproduce.EXAMPLES)(reproduce.command)
 
 
 def _print_version(wanted: bool) -> None:
@@ -59,10 +66,15 @@ def main() -> None:
     """Run the command line; bad input ends in one line and exit code 2, an interruption in exit code 130."""
     usage_error = _command_line_error()
     try:
-        code = app(standalone_mode=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # they are for those who call a library; what they lead to is one line
+            code = app(standalone_mode=False)
     except usage_error as error:
         message = error.format_message()  # type: ignore[attr-defined]
         code = _fail(message) if message else 2  # without arguments the help has been printed
+    except BrokenPipeError:  # whoever reads standard output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # or Python complains of what it could not flush
+        code = _BROKEN_PIPE
     except (ValueError, OSError, MemoryError) as error:
         code = _fail(str(error) or type(error).__name__)
     except (KeyboardInterrupt, typer.Abort):
@@ -71,5 +83,7 @@ def main() -> None:
 
 
 def _fail(message: str) -> int:
-    print("ibr-ref: " + " ".join(message.split()), file=sys.stderr)
+    from ibr_ref.scene.checks import LONGEST_MESSAGE, one_line
+
+    print("ibr-ref: " + one_line(message, LONGEST_MESSAGE), file=sys.stderr)
     return 2

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ibr_ref.cli.progress import progress
+from ibr_ref.cli import json_output
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from ibr_ref.oracle.examination import Examination
@@ -39,7 +40,10 @@ def command(
             help="ieee32, d3d11, vulkan, webgpu or gl. Without: port.json's, or the tightest that explains all."
         ),
     ] = None,
-    json: Annotated[Path | None, typer.Option(help="Also write the verdict as JSON.")] = None,
+    json: Annotated[
+        Path | None,
+        typer.Option(help="Also write the verdict as JSON; -: on standard output, the words on standard error."),
+    ] = None,
     report: Annotated[Path | None, typer.Option(help="Also write it as one HTML page, with pictures.")] = None,
     self_test: Annotated[
         bool, typer.Option("--self-test", help="Try the oracle on right ports and on broken ones, and print the table.")
@@ -48,22 +52,14 @@ def command(
 ) -> None:
     """Say whether a port's pictures are right, and if not, where they first go wrong."""
     if self_test:
-        if case is not None:
-            raise typer.BadParameter("--self-test takes no folders")
         from ibr_ref.cli.self_test import run
 
         raise typer.Exit(run(method))
     if case is None or port is None:
         raise typer.BadParameter("found too few folders, allowed: CASE and PORT, or --self-test")
-    if method is not None:
-        raise typer.BadParameter("--method goes with --self-test")
     examination = _examined(case, port, device, json, report)
-    if json is not None:
-        from ibr_ref.io.files import atomic
-
-        with atomic(json) as file:
-            file.write((examination.verdict.model_dump_json(indent=2) + "\n").encode("utf-8"))
-    typer.echo(examination.verdict.words())
+    json_output.write(json, examination.verdict.model_dump_json(indent=2))
+    typer.echo(examination.verdict.words(), err=json_output.is_standard_output(json))
     raise typer.Exit(examination.verdict.outcome.exit_code)
 
 
@@ -73,9 +69,9 @@ def _examined(case: Path, port: Path, device: str | None, json: Path | None, rep
         step("reading the case")
         from ibr_ref import io, oracle
 
-        for path in (json, report):
-            if path is not None:
-                io.check_writable(path)
+        json_output.check_writable(json)
+        if report is not None:
+            io.check_writable(report)
         loaded = oracle.load_case(case)
         step("reading what the port drew")
         submission = oracle.load_submission(port, loaded)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ibr_ref.cli import options
-from ibr_ref.cli.progress import progress
+from ibr_ref.cli import emptiness, options
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from ibr_ref.scene import BasePolygon
@@ -69,36 +69,63 @@ def command(
     color: Annotated[Path | None, typer.Option(help="Colour map. Without: greys by height.")] = None,
     normal: Annotated[Path | None, typer.Option(help="Normal map (+y is up). Without: from the heights.")] = None,
     facade: Annotated[Path | None, typer.Option(help="Tile that covers steep walls.")] = None,
-    facade_tile: Annotated[str, typer.Option(metavar="W,H", help="Size of a facade tile, world units.")] = "0.1,0.1",
+    facade_tile: Annotated[
+        options.Pair, typer.Option(parser=options.pair, metavar="W,H", help="Size of a facade tile, world units.")
+    ] = options.Pair(0.1, 0.1),
     invert_height: Annotated[bool, typer.Option("--invert-height", help="White is deep in the height map.")] = False,
+    no_exif: Annotated[
+        bool, typer.Option("--no-exif", help="Keep the rows as stored: do not turn images as their Exif tags say.")
+    ] = False,
     height_scale: Annotated[
-        float, typer.Option(help="Height of white, world units; the map's longer side is 1.")
+        float, typer.Option(parser=options.number, help="Height of white, world units; the map's longer side is 1.")
     ] = 0.15,
-    eye: Annotated[str, typer.Option(metavar="X,Y,Z", help="The eye; z is up, the map is centred at the origin.")] = (
-        "0.6,-1.25,0.95"
-    ),
-    target: Annotated[str, typer.Option(metavar="X,Y,Z", help="The point looked at.")] = "0,0,0",
-    fov: Annotated[float, typer.Option(help="Vertical field of view, degrees.")] = 45.0,
-    light: Annotated[str, typer.Option(metavar="X,Y,Z", help="Direction towards the light.")] = "-0.6,-0.5,1",
-    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels of the picture.")] = "640x480",
-    steps: Annotated[int, typer.Option(help="N, steps of the linear search.")] = 10,
-    binary_steps: Annotated[int, typer.Option(help="M, steps of the binary search.")] = 6,
-    delta: Annotated[float, typer.Option(help="Threshold of a steep wall, in units of the height.")] = 0.1,
-    shadow_steps: Annotated[int, typer.Option(help="Samples towards the light; 0: no self-shadow.")] = 0,
+    eye: Annotated[
+        options.Vector,
+        typer.Option(
+            parser=options.vector, metavar="X,Y,Z", help="The eye; z is up, the map is centred at the origin."
+        ),
+    ] = options.Vector(0.6, -1.25, 0.95),
+    target: Annotated[
+        options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="The point looked at.")
+    ] = options.Vector(0, 0, 0),
+    fov: Annotated[float, typer.Option(parser=options.number, help="Vertical field of view, degrees.")] = 45.0,
+    near: options.Near = None,
+    far: options.Far = None,
+    light: Annotated[
+        options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="Direction towards the light.")
+    ] = options.Vector(-0.6, -0.5, 1),
+    size: Annotated[
+        options.Size, typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture.")
+    ] = options.Size(640, 480),
+    steps: Annotated[int, typer.Option(parser=options.whole, help="N, steps of the linear search.")] = 10,
+    binary_steps: Annotated[int, typer.Option(parser=options.whole, help="M, steps of the binary search.")] = 6,
+    delta: Annotated[
+        float,
+        typer.Option(parser=options.number, help="--facade: threshold of a steep wall, in units of the height."),
+    ] = 0.1,
+    shadow_steps: Annotated[
+        int, typer.Option(parser=options.whole, help="Samples towards the light; 0: no self-shadow.")
+    ] = 0,
     interval: Annotated[Interval, typer.Option(help="Stretch of the view ray that is searched.")] = Interval.paper,
     faces: Annotated[FaceSet, typer.Option(help="Faces of the volume that are drawn.")] = FaceSet.auxiliary,
     method: Annotated[
         Method, typer.Option(help="Search for the hit; from relief on, systems to compare with: shapes sink, not rise.")
     ] = Method.protruded,
-    lod_bias: Annotated[float, typer.Option(help="mcguire: level of the mip chain that heights come from.")] = 1.0,
-    min_steps: Annotated[int, typer.Option(help="tatarchuk: steps where the view is straight down.")] = 8,
-    max_steps: Annotated[int, typer.Option(help="tatarchuk: steps where the view is horizontal.")] = 50,
-    distance_layers: Annotated[int, typer.Option(help="donnelly: layers of the distance texture.")] = 32,
+    lod_bias: Annotated[
+        float, typer.Option(parser=options.number, help="mcguire: level of the mip chain that heights come from.")
+    ] = 1.0,
+    min_steps: Annotated[
+        int, typer.Option(parser=options.whole, help="tatarchuk: steps where the view is straight down.")
+    ] = 8,
+    max_steps: Annotated[
+        int, typer.Option(parser=options.whole, help="tatarchuk: steps where the view is horizontal.")
+    ] = 50,
+    distance_layers: Annotated[
+        int, typer.Option(parser=options.whole, help="donnelly: layers of the distance texture.")
+    ] = 32,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
-    eye_, target_, light_ = options.vector(eye), options.vector(target), options.vector(light)
-    width, rows = options.size(size)
     with progress(3) as step:
         step("reading maps")
         from ibr_ref import displacement, io
@@ -108,17 +135,8 @@ def command(
         if stages is not None:
             io.check_writable(stages)
         polygon = _polygon(
-            height, normal_height, color, normal, facade, options.pair(facade_tile), invert_height, height_scale
+            height, normal_height, color, normal, facade, facade_tile, invert_height, height_scale, not no_exif
         )
-        scene = displacement.Scene(
-            polygons=[polygon],
-            camera=Camera.look_at(
-                eye=eye_, target=target_, up=(0, 0, 1) if eye_[:2] != target_[:2] else (0, 1, 0),
-                vertical_fov=fov, near=0.01, far=100.0, width=width, height=rows,
-            ),
-            light=Light(direction=light_),
-            background=(1.0, 1.0, 1.0),
-        )  # fmt: skip
         params = displacement.Params(
             linear_steps=steps,
             binary_steps=binary_steps,
@@ -132,12 +150,22 @@ def command(
             max_steps=max_steps,
             distance_layers=distance_layers,
         )
+        view = Camera.look_at(
+            eye=eye, target=target, up=options.up(eye, target), vertical_fov=fov, width=size.width, height=size.height
+        )
+        scene = displacement.Scene(
+            polygons=[polygon],
+            camera=view.fitted(displacement.bounding_points([polygon], view, params), near=near, far=far),
+            light=Light(direction=light),
+            background=(1.0, 1.0, 1.0),
+        )
         step("rendering")
         frame = displacement.render(scene, params, stages=stages is not None)
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
         frame.save(out)
+    emptiness.say(frame, lambda: displacement.culled(scene, params))
 
 
 def _polygon(
@@ -149,6 +177,7 @@ def _polygon(
     facade_tile: tuple[float, float],
     invert_height: bool,
     height_scale: float,
+    exif: bool,
 ) -> BasePolygon:
     """The maps on a rectangle of their own shape: longer side 1, centred, z up, the images' top edge at +y.
 
@@ -159,14 +188,14 @@ def _polygon(
 
     if (height is None) == (normal_height is None) or (normal_height is not None and normal is not None):
         raise typer.BadParameter("give either --height (and perhaps --normal) or --normal-height")
-    normals = None if normal is None else io.read_normal(normal)
+    normals = None if normal is None else io.read_normal(normal, exif)
     if normal_height is not None:
-        normals, heights = io.read_normal_height(normal_height)
+        normals, heights = io.read_normal_height(normal_height, exif)
     else:
         assert height is not None
-        heights = io.read_height(height)
+        heights = io.read_height(height, exif)
     heights = 1.0 - heights if invert_height else heights
-    colors = io.read_color(color) if color else 0.25 + 0.65 * heights[..., None].repeat(3, axis=2)
+    colors = io.read_color(color, exif) if color else 0.25 + 0.65 * heights[..., None].repeat(3, axis=2)
     longest = max(heights.shape)
     across, along = heights.shape[1] / longest, heights.shape[0] / longest
     return BasePolygon(
@@ -176,7 +205,7 @@ def _polygon(
         height_map=heights[::-1],
         color_map=colors[::-1],
         normal_map=None if normals is None else normals[::-1],
-        facade_map=None if facade is None else io.read_color(facade),
+        facade_map=None if facade is None else io.read_color(facade, exif),
         facade_tile=facade_tile,
         height_scale=height_scale,
     )

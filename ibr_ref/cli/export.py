@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ibr_ref.cli.progress import progress
+from ibr_ref.progress import progress
 
 EXAMPLES = """
 Examples:
@@ -41,10 +41,6 @@ def command(
     A folder that holds an export of the same case is replaced; nothing is ever half-written.
     """
     if list_ or schema:
-        if case is not None:
-            raise typer.BadParameter(
-                f"found the case {case!r} with --list or --schema, allowed: neither or nothing else"
-            )
         return _print_schema() if schema else _print_list()
     if case is None or folder is None:
         raise typer.BadParameter("found no CASE and DIR, allowed: both, or --list, or --schema")

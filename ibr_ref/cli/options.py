@@ -1,76 +1,203 @@
-"""Option values that are more than a word or a number."""
+"""How the values of options are read: numbers in ASCII digits, and what is more than a number. Typer calls these.
+
+Nothing else is taken for a number: no digits of other scripts, no `1_000`, no `0x10`. What a number may be is said by the
+field that it is for. Defaults are values already and stay.
+"""
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Callable, Iterable
+from functools import wraps
+from typing import Annotated, NamedTuple, TypeVar
+
 import typer
 
-Vector = tuple[float, float, float]
+
+def _joined(values: Iterable[float]) -> str:
+    """As it is typed."""
+    return ",".join(map(repr, values))
+
+
+class Vector(NamedTuple):
+    """A point or a direction in world space."""
+
+    x: float
+    y: float
+    z: float
+
+    def __str__(self) -> str:
+        return _joined(self)
+
+
+class Pair(NamedTuple):
+    """A size in world units, or a place on a plane."""
+
+    x: float
+    y: float
+
+    def __str__(self) -> str:
+        return _joined(self)
+
+
+class Size(NamedTuple):
+    """Of a picture, pixels."""
+
+    width: int
+    height: int
+
+    def __str__(self) -> str:
+        return f"{self.width}x{self.height}"
+
+
+class Law(NamedTuple):
+    """Of the width of splats."""
+
+    alpha: float
+    beta: float
+    gamma: float
+    delta: float
+
+    def __str__(self) -> str:
+        return _joined(self)
+
+
+class Cameras(tuple[int, ...]):
+    """Their numbers."""
+
+    def __str__(self) -> str:
+        return _joined(self)
+
+
+class View(NamedTuple):
+    """A camera, or two and how far it is from the first to the second."""
+
+    first: int
+    second: int | None
+    fraction: float
+
+    def __str__(self) -> str:
+        return str(self.first) if self.second is None else f"{self.first}:{self.second}:{self.fraction:g}"
+
+
+Value = TypeVar("Value")
+
+_NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?\s*", re.ASCII | re.IGNORECASE)
+_NOT_FINITE = re.compile(r"[+-]?(inf|infinity|nan)", re.ASCII | re.IGNORECASE)
+_WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
+
+
+def _reads(read: Callable[[str], Value]) -> Callable[[str], Value]:
+    """A parser for Typer, which hands it the defaults too."""
+
+    @wraps(read)
+    def parser(text: str | Value) -> Value:
+        return read(text) if isinstance(text, str) else text
+
+    return parser
+
+
+def _bad(text: str, allowed: str) -> typer.BadParameter:
+    from ibr_ref.scene.checks import one_line  # here: an answer to --help must not wait for NumPy
+
+    return typer.BadParameter(f"found {one_line(repr(text))}, allowed: {allowed}")
+
+
+@_reads
+def repeats(text: str) -> int:
+    """How often something is done: 1 to 1000."""
+    if not _WHOLE.fullmatch(text) or not 1 <= int(text) <= 1000:
+        raise _bad(text, "a whole number from 1 to 1000")
+    return int(text)
+
+
+def _finite(text: str) -> float:
+    value = float(text) if _NUMBER.fullmatch(text) else math.nan
+    return value if math.isfinite(value) else math.nan
+
+
+@_reads
+def number(text: str) -> float:
+    """One number. Fields say themselves that inf and nan are none."""
+    if not (_NUMBER.fullmatch(text) or _NOT_FINITE.fullmatch(text)):
+        raise _bad(text, "a number, such as 0.15")
+    return float(text)
+
+
+@_reads
+def whole(text: str) -> int:
+    """One whole number."""
+    if not _WHOLE.fullmatch(text):
+        raise _bad(text, "a whole number, such as 9")
+    return int(text)
+
+
+Near = Annotated[
+    float | None, typer.Option(parser=number, help="Distance of the near plane. Without: before all that is there.")
+]
+Far = Annotated[
+    float | None, typer.Option(parser=number, help="Distance of the far plane. Without: behind all that is there.")
+]
 
 
 def _numbers(text: str, count: int, example: str) -> tuple[float, ...]:
-    try:
-        values = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        values = ()
-    if len(values) != count or any(v != v or abs(v) == float("inf") for v in values):
-        raise typer.BadParameter(f"found {text!r}, allowed: {count} numbers, such as {example}")
+    values = tuple(map(_finite, text.split(",")))
+    if len(values) != count or any(map(math.isnan, values)):
+        raise _bad(text, f"{count} numbers, such as {example}")
     return values
 
 
+@_reads
 def vector(text: str) -> Vector:
     """X,Y,Z."""
-    x, y, z = _numbers(text, 3, "1.0,-2.5,0.3")
-    return x, y, z
+    return Vector(*_numbers(text, 3, "1.0,-2.5,0.3"))
 
 
-def pair(text: str) -> tuple[float, float]:
-    """W,H in world units."""
-    w, h = _numbers(text, 2, "0.1,0.1")
-    return w, h
+@_reads
+def pair(text: str) -> Pair:
+    """W,H in world units, or the place X,Y of an object."""
+    return Pair(*_numbers(text, 2, "0.3,0.2"))
 
 
-def place(text: str) -> tuple[float, float]:
-    """X,Y of an object."""
-    x, y = _numbers(text, 2, "0.3,-0.2")
-    return x, y
-
-
-def law(text: str) -> tuple[float, float, float, float]:
+@_reads
+def law(text: str) -> Law:
     """A,B,C,D of a splat law."""
-    a, b, c, d = _numbers(text, 4, "1,0,0.002,0.7")
-    return a, b, c, d
+    return Law(*_numbers(text, 4, "1,0,0.002,0.7"))
 
 
-def numbers(text: str) -> list[int]:
+@_reads
+def cameras(text: str) -> Cameras:
     """I,J,..: numbers of cameras."""
     parts = text.split(",")
-    if not all(part.isascii() and part.isdigit() for part in parts):
-        raise typer.BadParameter(f"found {text!r}, allowed: numbers of cameras, such as 0 or 0,1")
-    return [int(part) for part in parts]
+    if not all(part[:1].isdigit() and _WHOLE.fullmatch(part) for part in parts):
+        raise _bad(text, "numbers of cameras, such as 0 or 0,1")
+    return Cameras(map(int, parts))
 
 
-def view(text: str) -> tuple[int, int | None, float]:
+@_reads
+def view(text: str) -> View:
     """I, I:J or I:J:F: one camera, or two and how far it is from the first to the second."""
     first, *rest = text.split(":")
-    fraction = rest[1] if len(rest) == 2 else "0.5"
-    try:
-        if len(rest) > 2 or not all(part.isascii() and part.isdigit() for part in (first, *rest[:1])):
-            raise ValueError
-        where = float(fraction)
-        if not 0.0 <= where <= 1.0:
-            raise ValueError
-    except ValueError:
-        allowed = "a camera, such as 1, or two and a fraction in [0, 1], such as 0:1 or 0:1:0.25"
-        raise typer.BadParameter(f"found {text!r}, allowed: {allowed}") from None
-    return int(first), int(rest[0]) if rest else None, where
+    where = _finite(rest[1]) if len(rest) == 2 else 0.5
+    between = [first, *rest[:1]]
+    if len(rest) > 2 or not all(n[:1].isdigit() and _WHOLE.fullmatch(n) for n in between) or not 0.0 <= where <= 1.0:
+        raise _bad(text, "a camera, such as 1, or two and a fraction in [0, 1], such as 0:1 or 0:1:0.25")
+    return View(int(first), int(rest[0]) if rest else None, where)
 
 
-def size(text: str) -> tuple[int, int]:
+@_reads
+def size(text: str) -> Size:
     """WIDTHxHEIGHT in pixels."""
     parts = text.lower().split("x")
-    if len(parts) != 2 or not all(part.isascii() and part.isdigit() for part in parts):
-        raise typer.BadParameter(f"found {text!r}, allowed: WIDTHxHEIGHT in pixels, such as 640x480")
+    if len(parts) != 2 or not all(part[:1].isdigit() and _WHOLE.fullmatch(part) for part in parts):
+        raise _bad(text, "WIDTHxHEIGHT in pixels, such as 640x480")
     width, height = int(parts[0]), int(parts[1])
     if not (1 <= width <= 65536 and 1 <= height <= 65536 and width * height <= 2**28):
-        raise typer.BadParameter(f"found {text!r}, allowed: sides from 1 to 65536, at most 2^28 pixels")
-    return width, height
+        raise _bad(text, "sides from 1 to 65536, at most 2^28 pixels")
+    return Size(width, height)
+
+
+def up(eye: Vector, target: Vector) -> Vector:
+    """The direction that is up in a picture where z is: y for a view straight down or up."""
+    return Vector(0.0, 0.0, 1.0) if eye[:2] != target[:2] else Vector(0.0, 1.0, 0.0)

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ibr_ref.cli.progress import progress
+import typer
+
+from ibr_ref.cli.tables import show
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -18,8 +21,6 @@ MUTANT_KINDS = ("easy", "typical", "adversarial")
 
 def run(method: str | None) -> int:
     """Print both tables and the totals; the exit code: 0 if no variant is accused and no mutant unexpectedly survives."""
-    from rich.console import Console
-
     from ibr_ref.oracle import self_test
     from ibr_ref.oracle.cases import METHODS
     from ibr_ref.scene import checks
@@ -37,11 +38,10 @@ def run(method: str | None) -> int:
             for mutant in self_test.try_mutants(name, kinds=MUTANT_KINDS):
                 step(f"{name}: mutant {mutant.mutant.name}")
                 mutants.append(mutant)
-    console = Console(width=160, soft_wrap=False)
-    console.print(_variant_table(variants))
-    console.print(_mutant_table(mutants))
+    show(_variant_table(variants))
+    show(_mutant_table(mutants))
     for name in methods:
-        console.print(_totals(name, variants, mutants))
+        typer.echo(_totals(name, variants, mutants))
     accused = any(variant.accused for variant in variants)
     survived = any(mutant.case is None and not mutant.mutant.survives for mutant in mutants)
     return int(accused or survived)

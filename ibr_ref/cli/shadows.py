@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import os
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import options
-from ibr_ref.cli.progress import progress
+from ibr_ref.cli import emptiness, options
+from ibr_ref.cli.command import given
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
-    from ibr_ref.cli.progress import Step
     from ibr_ref.io import Frame
+    from ibr_ref.progress import Step
     from ibr_ref.scene import Mesh
     from ibr_ref.shadows import Maps, Params, Scene, SoftParams
 
@@ -53,6 +55,13 @@ class Policy(StrEnum):
     nearest = "nearest"
 
 
+class Interpolation(StrEnum):
+    """Pace of the control points between two maps."""
+
+    linear = "linear"
+    projective = "projective"
+
+
 class Content(StrEnum):
     """What a map holds."""
 
@@ -76,20 +85,26 @@ class Up(StrEnum):
     z = "z"
 
 
-Y_UP = (".obj", ".gltf", ".glb")
-"""Formats whose meshes have y up, by definition or by custom."""
-
-
 def command(
+    context: typer.Context,
     out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
     caster: Annotated[
         Path | None, typer.Option(help="The mesh that moves: OBJ, PLY, STL, glTF, Bézier patches. Without: a horse.")
     ] = None,
     up: Annotated[Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")] = None,
-    offset: Annotated[str, typer.Option(metavar="X,Y", help="Where it stands, -0.6 to 0.6 each.")] = "0,0",
-    samples: Annotated[int, typer.Option(help="Samples of the light: 1 (a hard shadow), 5 or 9.")] = 1,
+    offset: Annotated[
+        options.Pair,
+        typer.Option(parser=options.pair, metavar="X,Y", help="Where it stands, -0.6 to 0.6 each."),
+    ] = options.Pair(0, 0),
+    samples: Annotated[
+        int, typer.Option(parser=options.whole, help="Samples of the light: 1 (a hard shadow), 5 or 9.")
+    ] = 1,
     light_size: Annotated[
-        float, typer.Option(help="Half the side of the light; the mesh's largest extent is 1.")
+        float,
+        typer.Option(
+            parser=options.number,
+            help="Half the side of the light, for more than one sample; the mesh's largest extent is 1.",
+        ),
     ] = 0.12,
     method: Annotated[
         Method,
@@ -98,19 +113,37 @@ def command(
             "convolution, percentage-closer soft shadows."
         ),
     ] = Method.warp,
-    map_size: Annotated[int, typer.Option(help="Texels a side of a shadow map.")] = 512,
-    map_samples: Annotated[int, typer.Option(help="k: a texel is the coverage of k x k samples.")] = 1,
-    rows: Annotated[int, typer.Option(help="Control points downwards.")] = 15,
-    columns: Annotated[int, typer.Option(help="Control points across.")] = 5,
+    map_size: Annotated[int, typer.Option(parser=options.whole, help="Texels a side of a shadow map.")] = 512,
+    map_samples: Annotated[
+        int, typer.Option(parser=options.whole, help="k: a texel is the coverage of k x k samples.")
+    ] = 1,
+    rows: Annotated[int, typer.Option(parser=options.whole, help="Control points downwards.")] = 15,
+    columns: Annotated[int, typer.Option(parser=options.whole, help="Control points across.")] = 5,
     policy: Annotated[Policy, typer.Option(help="Six warps a map, or three.")] = Policy.dissolve,
+    interpolation: Annotated[
+        Interpolation, typer.Option(help="Pace between two maps: even, as in the paper, or that of perspective.")
+    ] = Interpolation.linear,
     content: Annotated[Content, typer.Option(help="Silhouettes, or depths.")] = Content.mask,
     controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = Controls.fast,
     maps: Annotated[
-        Path | None, typer.Option(help="--method warp: prepared maps are read from here, or else written here (.npz).")
+        Path | None,
+        typer.Option(
+            help="--method warp: prepared maps are read from here, with all that they were made with, or else written here "
+            "(.npz)."
+        ),
     ] = None,
-    eye: Annotated[str, typer.Option(metavar="X,Y,Z", help="The eye; z is up, the floor is at -0.5.")] = "1.4,-3,2.1",
-    target: Annotated[str, typer.Option(metavar="X,Y,Z", help="Point looked at.")] = "0.15,0.35,-0.1",
-    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels of the picture.")] = "640x480",
+    eye: Annotated[
+        options.Vector,
+        typer.Option(parser=options.vector, metavar="X,Y,Z", help="The eye; z is up, the floor is at -0.5."),
+    ] = options.Vector(1.4, -3, 2.1),
+    target: Annotated[
+        options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point looked at.")
+    ] = options.Vector(0.15, 0.35, -0.1),
+    near: options.Near = None,
+    far: options.Far = None,
+    size: Annotated[
+        options.Size, typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture.")
+    ] = options.Size(640, 480),
     report: Annotated[
         bool,
         typer.Option(
@@ -120,66 +153,80 @@ def command(
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
     """Shadows by image warping (Kang & Ihm 2002) of a mesh that moves over a floor with steps."""
-    where, eye_, target_ = options.place(offset), options.vector(eye), options.vector(target)
-    width, height = options.size(size)
-    if maps is not None and method is not Method.warp:
-        raise typer.BadParameter("--maps goes with --method warp")
     with progress(4) as step:
         step("reading the mesh")
         from ibr_ref import io, models, shadows
 
         io.check_image_writable(out)
-        for path in (stages, None if maps is None or maps.exists() else maps):
+        for path in (stages, None if maps is None or _kept(maps) else maps):
             if path is not None:
                 io.check_writable(path)
         scene = models.shadow_stage(
             read_caster(caster, up),
-            offset=where,
+            offset=offset,
             light_size=light_size,
-            eye=eye_,
-            target=target_,
-            width=width,
-            height=height,
+            eye=eye,
+            target=target,
+            width=size.width,
+            height=size.height,
+            near=near,
+            far=far,
         )
         if method.soft:
             step("rendering")
             soft = shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples)
             frame, lines = _soft_frame(scene, soft, stages is not None, report)
         else:
-            params = shadows.Params(
-                map_size=map_size,
-                map_samples=map_samples,
-                rows=rows,
-                columns=columns,
-                policy=policy.value,
-                content=content.value,
-                light_samples=samples,
-                method=method.value,
-            )
-            prepared = _prepared(scene, params, controls, maps, step) if method is Method.warp else None
+            fields: dict[str, Any] = {
+                "map_size": map_size,
+                "map_samples": map_samples,
+                "rows": rows,
+                "columns": columns,
+                "policy": policy.value,
+                "interpolation": interpolation.value,
+                "content": content.value,
+                "light_samples": samples,
+                "method": method.value,
+            }
+            loaded = _loaded(maps, fields, controls, given(context), step)
+            params = shadows.Params(**fields)
+            prepared = loaded or (_prepared(scene, params, controls, maps, step) if method is Method.warp else None)
             step("rendering")
             frame, lines = _frame(scene, params, prepared, stages is not None, report)
+            poor = None if prepared is None else _poor(prepared)
+            if poor:
+                typer.echo(poor, err=True)
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
         frame.save(out)
     for line in lines:
         typer.echo(line)
+    emptiness.say(frame, lambda: shadows.culled(scene))
+    if not method.soft:
+        emptiness.say_cut(shadows.cut_by_light(scene, params))
 
 
 def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
     """The frame, and what is reported of it."""
     from ibr_ref import shadows
-    from ibr_ref.cli.shadow_quality import report_lines
+    from ibr_ref.cli.shadows_report import report_lines
 
     frame = shadows.render(scene, params, maps=maps, stages=keep or report)
     return frame, report_lines(scene, params, frame, maps) if report else []
 
 
+def _poor(maps: Maps) -> str | None:
+    """A line for standard error."""
+    from ibr_ref.cli.shadows_report import poor_line
+
+    return poor_line(maps)
+
+
 def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> tuple[Frame, list[str]]:
     """The frame, and what is reported of it."""
     from ibr_ref import shadows
-    from ibr_ref.cli.shadow_quality import soft_report_line
+    from ibr_ref.cli.shadows_report import soft_report_line
 
     frame = shadows.render_soft(scene, params, stages=keep or report)
     return frame, [soft_report_line(scene, frame)] if report else []
@@ -187,27 +234,39 @@ def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> t
 
 def read_caster(path: Path | None, up: Up | None) -> Mesh:
     """The caster with z up; without a path the horse."""
-    import numpy as np
-
     from ibr_ref import io, models
-    from ibr_ref.scene import Mesh
 
-    if path is None:
-        return models.horse()
-    mesh = io.read_mesh(path)
-    if up is Up.z or (up is None and path.suffix.lower() not in Y_UP):
-        return mesh
-    x, y, z = np.asarray(mesh.vertices).T
-    return Mesh(vertices=np.stack([x, -z, y], axis=1), triangles=mesh.triangles, color=mesh.color)
+    return models.horse() if path is None else io.read_upright(path, None if up is None else up.value)
+
+
+def _kept(path: Path) -> bool:
+    """Whether maps may be read from there: not from a pipe or a device, which are written to."""
+    from ibr_ref.io.outputs import is_stream
+
+    return os.path.exists(path) and not is_stream(path)  # Path.exists raises for names that are too long
+
+
+def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named: set[str], step: Step) -> Maps | None:
+    """Maps from the file if it is there. Fields that were not named become the file's; those that were must be."""
+    from ibr_ref import shadows
+
+    if path is None or not _kept(path):
+        return None
+    step("reading the maps")
+    maps = shadows.Maps.load(path)
+    wanted = {**fields, "controls": controls.value}
+    for name, value in {**maps.made_with, "controls": maps.placement}.items():
+        if name in named and wanted[name] != value:
+            flag = "--" + name.replace("_", "-")
+            raise typer.BadParameter(f"{flag}: found {wanted[name]}, allowed: {value} ({name} of {path})")
+    fields.update(maps.made_with)
+    return maps
 
 
 def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | None, step: Step) -> Maps:
-    """Maps from the file if it is there; otherwise made, and written there if it is named."""
+    """Maps made here, and written where a file is named."""
     from ibr_ref import shadows
 
-    if path is not None and path.exists():
-        step("reading the maps")
-        return shadows.Maps.load(path)
     step(f"preparing nine maps ({controls.value} controls)")
     made = shadows.prepare(scene, params, controls=controls.value, progress=step.within)
     if path is not None:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import options
-from ibr_ref.cli.progress import progress
+from ibr_ref.cli import emptiness, options
+from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,54 +50,92 @@ class Method(StrEnum):
 def command(
     out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
     msr: Annotated[Path | None, typer.Option(help="A folder of MSR 3D Video (calibParams-*.txt, images).")] = None,
-    cameras: Annotated[str, typer.Option(metavar="I,J,..", help="--msr: the cameras that are references.")] = "0",
+    cameras: Annotated[
+        options.Cameras,
+        typer.Option(parser=options.cameras, metavar="I,J,..", help="--msr: the cameras that are references."),
+    ] = options.Cameras((0,)),
     view: Annotated[
-        str | None,
+        options.View | None,
         typer.Option(
-            metavar="I|I:J|I:J:F", help="--msr: seen from camera I, or between I and J (midway, or at F of 1)."
+            parser=options.view,
+            metavar="I|I:J|I:J:F",
+            help="--msr: seen from camera I, or between I and J (midway, or at F of 1).",
         ),
     ] = None,
-    frame: Annotated[int, typer.Option(help="--msr: number of the frame.")] = 0,
-    near: Annotated[float | None, typer.Option(help="--msr: Z of the depth code 255; known for two sequences.")] = None,
-    far: Annotated[float | None, typer.Option(help="--msr: Z of the depth code 0.")] = None,
+    frame: Annotated[int, typer.Option(parser=options.whole, help="--msr: number of the frame.")] = 0,
+    near: Annotated[
+        float | None,
+        typer.Option(
+            parser=options.number,
+            help="Distance of the near plane, which is before all points without; --msr: Z of the depth code 255, known for "
+            "two sequences.",
+        ),
+    ] = None,
+    far: Annotated[
+        float | None,
+        typer.Option(parser=options.number, help="Distance of the far plane likewise; --msr: Z of the depth code 0."),
+    ] = None,
     simple_texture: Annotated[Path | None, typer.Option(help="A SimpleTexture file (XMT-A).")] = None,
     mesh: Annotated[Path | None, typer.Option(help="A mesh, of which reference images are made.")] = None,
-    count: Annotated[int, typer.Option(help="--mesh: 4, 9, 16 or 32 reference images.")] = 9,
-    reference_size: Annotated[int, typer.Option(help="--mesh: pixels a side of a reference image.")] = 320,
+    count: Annotated[int, typer.Option(parser=options.whole, help="--mesh: 4, 9, 16 or 32 reference images.")] = 9,
+    reference_size: Annotated[
+        int, typer.Option(parser=options.whole, help="--mesh: pixels a side of a reference image.")
+    ] = 320,
     eye: Annotated[
-        str | None, typer.Option(metavar="X,Y,Z", help="The eye. Without: obliquely from the front.")
+        options.Vector | None,
+        typer.Option(parser=options.vector, metavar="X,Y,Z", help="The eye. Without: obliquely from the front."),
     ] = None,
-    target: Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Point looked at. Without: the middle.")] = None,
-    up: Annotated[str, typer.Option(metavar="X,Y,Z", help="The direction that is up in the picture.")] = "0,0,1",
-    fov: Annotated[float, typer.Option(help="Vertical field of view, degrees.")] = 45.0,
-    size: Annotated[str | None, typer.Option(metavar="WxH", help="Pixels of the picture; 640x480.")] = None,
+    target: Annotated[
+        options.Vector | None,
+        typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point looked at. Without: the middle."),
+    ] = None,
+    up: Annotated[
+        options.Vector,
+        typer.Option(parser=options.vector, metavar="X,Y,Z", help="The direction that is up in the picture."),
+    ] = options.Vector(0, 0, 1),
+    fov: Annotated[float, typer.Option(parser=options.number, help="Vertical field of view, degrees.")] = 45.0,
+    size: Annotated[
+        options.Size,
+        typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture; --msr has its own."),
+    ] = options.Size(640, 480),
     law: Annotated[
-        str | None, typer.Option(metavar="A,B,C,D", help="W = A/(B d^2 + C d + D) pixels at the distance d.")
+        options.Law | None,
+        typer.Option(parser=options.law, metavar="A,B,C,D", help="W = A/(B d^2 + C d + D) pixels at the distance d."),
     ] = None,
     fit: Annotated[
         bool, typer.Option("--fit", help="Fit the law to the references and the view (the default).")
     ] = False,
-    min_width: Annotated[float, typer.Option(help="Least width of a splat, pixels.")] = 1.0,
-    max_width: Annotated[float, typer.Option(help="Largest width of a splat, pixels.")] = 64.0,
+    min_width: Annotated[float, typer.Option(parser=options.number, help="Least width of a splat, pixels.")] = 1.0,
+    max_width: Annotated[float, typer.Option(parser=options.number, help="Largest width of a splat, pixels.")] = 64.0,
     shape: Annotated[
         Shape,
         typer.Option(help="Shape of a splat; ellipse: elliptical weighted averages (Zwicker et al. 2001), no law."),
     ] = Shape.square,
     footprint: Annotated[
-        float, typer.Option(help="--shape ellipse: deviation of a point's Gaussian, reference pixels.")
+        float,
+        typer.Option(parser=options.number, help="--shape ellipse: deviation of a point's Gaussian, reference pixels."),
     ] = 0.5,
     low_pass: Annotated[
-        float, typer.Option(help="--shape ellipse: deviation of the filter, pixels of the picture.")
+        float,
+        typer.Option(parser=options.number, help="--shape ellipse: deviation of the filter, pixels of the picture."),
     ] = 0.5,
-    cutoff: Annotated[float, typer.Option(help="--shape ellipse: where Gaussians end, deviations.")] = 2.0,
+    cutoff: Annotated[
+        float, typer.Option(parser=options.number, help="--shape ellipse: where Gaussians end, deviations.")
+    ] = 2.0,
     depth_tolerance: Annotated[
-        float, typer.Option(help="--shape ellipse: what is averaged with the nearest, share of the distance.")
+        float,
+        typer.Option(
+            parser=options.number, help="--shape ellipse: what is averaged with the nearest, share of the distance."
+        ),
     ] = 0.01,
     method: Annotated[
         Method, typer.Option(help="software: the paper's comparison, a loop on one thread; the same picture.")
     ] = Method.shader,
     light: Annotated[
-        str | None, typer.Option(metavar="X,Y,Z", help="Relight, from this direction. Without: the stored colours.")
+        options.Vector | None,
+        typer.Option(
+            parser=options.vector, metavar="X,Y,Z", help="Relight, from this direction. Without: the stored colours."
+        ),
     ] = None,
     report: Annotated[
         bool, typer.Option("--report", help="Print coverage, holes, overdraw, and the difference to the photograph.")
@@ -109,8 +147,6 @@ def command(
         raise typer.BadParameter("give one of --msr, --simple-texture and --mesh")
     if msr is not None and view is None:
         raise typer.BadParameter("--msr needs --view: the number of a camera, such as 1, or 0:1 for midway between two")
-    if law is not None and fit:
-        raise typer.BadParameter("give --law or --fit, not both")
     with progress(3) as step:
         step("reading references")
         from ibr_ref import io, splatting
@@ -122,15 +158,14 @@ def command(
         photograph: DepthImage | None = None
         if msr is not None:
             assert view is not None
-            images, camera, photograph = _from_msr(msr, options.numbers(cameras), view, frame, near, far)
+            images, camera, photograph = _from_msr(msr, cameras, view, frame, near, far, report)
         else:
             images = _images(simple_texture, mesh, count, reference_size)
-            width, height = options.size(size or "640x480")
-            camera = _camera(images, eye, target, up, fov, width, height)
+            camera = _camera(images, eye, target, up, fov, size, near, far)
         scene = splatting.Scene(
             images=images,
             camera=camera,
-            light=None if light is None else Light(direction=options.vector(light)),
+            light=None if light is None else Light(direction=light),
             background=(1.0, 1.0, 1.0) if msr is None else (0.0, 0.0, 0.0),
         )
         params = _params(
@@ -151,42 +186,61 @@ def command(
         if stages is not None:
             picture.save_stages(stages)
         picture.save(out)
+    emptiness.say(picture, lambda: splatting.culled(scene, params))
     if report:
-        from ibr_ref.cli.view_quality import report_lines
+        from ibr_ref.cli.splatting_report import report_lines
 
         typer.echo("\n".join(report_lines(scene, params, picture, photograph)))
 
 
-def _params(scene: Scene, law: str | None, **rest: Any) -> Params:
-    """The parameters, with the law that is given or fitted; ellipses have none."""
+def _params(scene: Scene, law: options.Law | None, **rest: Any) -> Params:
+    """The parameters, with the law that is given or fitted; ellipses have none, and where no point is in view none fits."""
     from ibr_ref import splatting
 
     plain = splatting.Params(**rest)  # what is wrong with these is said before the fit, which takes its time
     if law is not None:
-        fitted = options.law(law)
-    elif plain.shape == "ellipse":
+        return splatting.Params(**law._asdict(), **rest)
+    if plain.shape == "ellipse":
         return plain
-    else:
-        widths = {name: rest[name] for name in ("min_width", "max_width")}
+    widths = {name: rest[name] for name in ("min_width", "max_width")}
+    try:
         fitted = splatting.fit_splat_law(scene.images, scene.camera, **widths)
-    alpha, beta, gamma, delta = fitted
-    return splatting.Params(alpha=alpha, beta=beta, gamma=gamma, delta=delta, **rest)
+    except ValueError:
+        if splatting.culled(scene, plain).drawn:
+            raise
+        return plain
+    return splatting.Params(**fitted._asdict(), **rest)
 
 
 def _from_msr(
-    folder: Path, cameras: list[int], view: str, frame: int, near: float | None, far: float | None
+    folder: Path,
+    cameras: options.Cameras,
+    view: options.View,
+    frame: int,
+    near: float | None,
+    far: float | None,
+    report: bool,
 ) -> tuple[Sequence[DepthImage], Camera, DepthImage | None]:
-    """References, the view, and the picture that was taken from there (None between two cameras)."""
+    """References, the view, and for a report the photograph that was taken from there, if there is one."""
     from ibr_ref import io
     from ibr_ref.scene import Camera
 
     images = io.read_msr(folder, frame, cameras, near, far)
-    first, second, fraction = options.view(view)
-    if second is None:
-        (photograph,) = io.read_msr(folder, frame, (first,), near, far)
-        return images, photograph.camera, photograph
-    ends = io.read_msr(folder, frame, (first, second), near, far)
-    return images, Camera.between(ends[0].camera, ends[1].camera, fraction), None
+    ends = [view.first] if view.second is None else [view.first, view.second]
+    size = images[0].camera.width, images[0].camera.height
+    first, *rest = io.read_msr_cameras(folder, ends, *size, near, far)
+    if rest:
+        return images, Camera.between(first, rest[0], view.fraction), None
+    if not (report and io.has_msr_picture(folder, frame, view.first)):
+        return images, first, None
+    (photograph,) = io.read_msr(folder, frame, ends, near, far)
+    found = photograph.camera.width, photograph.camera.height
+    if found != size:
+        raise ValueError(
+            f"{folder}: found {found[0]} x {found[1]} pixels from camera {view.first}, allowed: {size[0]} x {size[1]} as "
+            f"from camera {cameras[0]}, to be compared"
+        )
+    return images, first, photograph
 
 
 def _images(simple_texture: Path | None, mesh: Path | None, count: int, size: int) -> Sequence[DepthImage]:
@@ -200,12 +254,13 @@ def _images(simple_texture: Path | None, mesh: Path | None, count: int, size: in
 
 def _camera(
     images: Sequence[DepthImage],
-    eye: str | None,
-    target: str | None,
-    up: str,
+    eye: options.Vector | None,
+    target: options.Vector | None,
+    up: options.Vector,
     fov: float,
-    width: int,
-    height: int,
+    size: options.Size,
+    near: float | None,
+    far: float | None,
 ) -> Camera:
     """The view; what is not given is chosen so that all points are seen."""
     import numpy as np
@@ -214,17 +269,9 @@ def _camera(
     from ibr_ref.scene import Camera
 
     low, high = splatting.bounds(images)
-    center = (low + high) / 2.0 if target is None else np.array(options.vector(target))
+    center = (low + high) / 2.0 if target is None else np.array(target)
     radius = float(np.sqrt(((high - low) ** 2).sum())) / 2.0 or 1.0
-    at = center + radius * np.array([1.3, -2.3, 1.1]) if eye is None else np.array(options.vector(eye))
-    reach = float(np.sqrt(((at - (low + high) / 2.0) ** 2).sum())) + radius
-    return Camera.look_at(
-        eye=at,
-        target=center,
-        up=options.vector(up),
-        vertical_fov=fov,
-        near=1e-3 * reach,
-        far=1.01 * reach,
-        width=width,
-        height=height,
-    )
+    at = center + radius * np.array([1.3, -2.3, 1.1]) if eye is None else np.array(eye)
+    camera = Camera.look_at(eye=at, target=center, up=up, vertical_fov=fov, width=size.width, height=size.height)
+    corners = [[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
+    return camera.fitted(corners, near=near, far=far)

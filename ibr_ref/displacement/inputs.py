@@ -13,6 +13,23 @@ from ibr_ref.scene import BasePolygon, Camera, Light, checks
 COMPARED = ("welsh", "mcguire", "donnelly", "tatarchuk", "cone", "relaxed_cone", "maximum_mipmap")
 """Systems with a kernel of their own (`compared`)."""
 METHODS = ("protruded", "exact", "relief", "texture", *COMPARED)
+_OWN = ("protruded", "exact")
+READ_BY: dict[str, tuple[str, ...]] = {
+    "linear_steps": (*_OWN, "relief", "mcguire", "donnelly", "cone", "relaxed_cone"),
+    "binary_steps": ("protruded", "relief", "relaxed_cone"),
+    "steep_threshold": _OWN,
+    "facade_map": _OWN,
+    "interval": _OWN,
+    "faces": _OWN,
+    "depth": tuple(name for name in METHODS if name != "welsh"),
+    "lod_bias": ("mcguire",),
+    "min_steps": ("tatarchuk",),
+    "max_steps": ("tatarchuk",),
+    "distance_layers": ("donnelly",),
+}
+"""Fields that only some methods read, and these: for the others the picture and the hits do not depend on them. (The
+numbers of hits, `march.hit_index`, are of the lattice N 2^M for "exact" and "texture" too.)"""
+
 INTERVALS = ("paper", "volume")
 FACES = ("auxiliary", "base", "extended")
 DEPTHS = ("displaced", "polygon")

@@ -14,33 +14,47 @@ from ibr_ref.scene import BasePolygon, Camera, Light
 from ibr_ref.scene.vectors import Array, cross, dot, length
 
 
-def _to_patch(rows: Array, corner: Array, homogeneous: Array) -> Array:
+def to_patch(rows: Array, corner: Array, homogeneous: Array) -> Array:
     """A homogeneous world point or direction in patch space."""
     offset = homogeneous[:3] - corner if homogeneous[3] == 1.0 else homogeneous[:3]
     return np.array([*(dot(row, offset) for row in rows), homogeneous[3]])
 
 
+def _normal(polygon: BasePolygon) -> Array:
+    normal = cross(*polygon.arrays[1:])
+    return normal / length(normal)
+
+
+def edge_h(polygon: BasePolygon) -> Array:
+    """(3,) N3, the edge of the volume that stands on the polygon."""
+    return polygon.height_scale * _normal(polygon)
+
+
+def rows_of(polygon: BasePolygon) -> Array:
+    """(3, 3) the reciprocal basis: u, v and h of a world point are its rows times the vector from the corner."""
+    _, edge_u, edge_v = polygon.arrays
+    upwards = edge_h(polygon)
+    across = cross(edge_v, upwards)
+    det = dot(edge_u, across)
+    return np.array([across / det, cross(upwards, edge_u) / det, cross(edge_u, edge_v) / det])
+
+
 def uniforms(polygon: BasePolygon, camera: Camera, light: Light) -> Uniforms:
     """The constants of a polygon's draw call."""
     corner, edge_u, edge_v = polygon.arrays
-    normal = cross(edge_u, edge_v)
-    normal = normal / length(normal)
-    edge_h = polygon.height_scale * normal
-    across = cross(edge_v, edge_h)
-    det = dot(edge_u, across)
-    rows = np.array([across / det, cross(edge_h, edge_u) / det, cross(edge_u, edge_v) / det])
+    normal, rows = _normal(polygon), rows_of(polygon)
     tangent = edge_u / length(edge_u)
     light_world = light.homogeneous
     return Uniforms(
         corner=corner.copy(),
-        axes=np.array([edge_u, edge_v, edge_h]),
+        axes=np.array([edge_u, edge_v, edge_h(polygon)]),
         rows=rows,
         frame=np.array([tangent, cross(normal, tangent), normal]),
         lengths=np.array([length(edge_u), length(edge_v)]),
         scale=polygon.height_scale,
         tile=np.array(polygon.facade_tile),
-        eye=_to_patch(rows, corner, camera.eye),
-        light=_to_patch(rows, corner, light_world),
+        eye=to_patch(rows, corner, camera.eye),
+        light=to_patch(rows, corner, light_world),
         eye_world=camera.eye.copy(),
         light_world=light_world,
         phong=np.array([light.ambient, light.diffuse, light.specular]),

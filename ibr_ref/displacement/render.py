@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.displacement import compared, inputs
 from ibr_ref.displacement.buffers import Settings
+from ibr_ref.displacement.contract import FRAGMENT_FIELDS
 from ibr_ref.displacement.fragment import Map, Maps, draw
 from ibr_ref.displacement.inputs import Params, Scene
 from ibr_ref.displacement.maxima import Maxima, build
@@ -24,7 +25,7 @@ from ibr_ref.scene import BasePolygon
 def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -> Frame:
     """Render base polygons with their height maps.
 
-    With `stages` the frame holds every intermediate array (`displacement.__doc__` lists them); without, the same
+    With `stages` the frame holds every intermediate array (`contract.STAGES` lists them); without, the same
     picture and depth sooner. Raises ValueError for inputs that only together are not allowed.
     """
     params = Params() if params is None else params
@@ -117,24 +118,9 @@ def _stages(
         "vertex.clip": np.concatenate([f.clip for f in faces]),
         "vertex.patch": np.concatenate([f.patch for f in faces]),
     }
-    groups = {
-        "raster": ("face", "patch_id", "patch"),
-        "march": (
-            "linear_index",
-            "hit_index",
-            "hit",
-            "height_before",
-            "steep",
-            "margin",
-            "domain_margin",
-            "steep_margin",
-        ),
-        "shade": ("albedo", "normal", "lit", "lit_margin", "axis_margin", "facing_margin"),
-    }
-    for group, names in groups.items():
-        for name in names:
-            array = getattr(target, name)
-            stages[f"{group}.{name}"] = array.reshape(*size, *array.shape[1:])
+    for field, name in FRAGMENT_FIELDS.items():
+        array = getattr(target, field)
+        stages[name] = array.reshape(*size, *array.shape[1:])
     if fetches:
         shown = np.maximum(target.patch_id, 0)[None]
         stages["march.fetches"] = np.take_along_axis(np.array(fetches), shown, axis=0).reshape(size)

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.contract import IMAGE, StageArray
+from ibr_ref.displacement.contract import FRAGMENT_FIELDS, STAGES
 from ibr_ref.jit import LANES, device, kernel, prange
 from ibr_ref.pipeline.memory import Layout, arrays
 from ibr_ref.pipeline.merge import passes
@@ -43,22 +45,19 @@ class Target(NamedTuple):
     """Window depth of the nearest kept fragment behind the one that is shown."""
 
 
-_TRIPLES = ("color", "patch", "hit", "albedo", "normal")
-_INTS = ("face", "patch_id", "linear_index", "hit_index")
-_BOOLS = ("steep", "lit")
+def _entry(field: str) -> StageArray:
+    """The contract's entry of a field of the target."""
+    if field in FRAGMENT_FIELDS:
+        return STAGES[FRAGMENT_FIELDS[field]]
+    return IMAGE["depth" if field == "second" else field]
 
 
 def target_for(pixels: int, keep: bool) -> Target:
     """Arrays for a picture of so many pixels, not yet cleared."""
 
     def layouts(names: tuple[str, ...], count: int) -> list[Layout]:
-        return [
-            (
-                np.int32 if name in _INTS else np.bool_ if name in _BOOLS else np.float64,
-                (count, 3) if name in _TRIPLES else (count,),
-            )
-            for name in names
-        ]
+        entries = [_entry(name) for name in names]
+        return [(np.dtype(entry.dtype).type, (count, *map(int, entry.shape[2:]))) for entry in entries]
 
     picture, stages = Target._fields[:2], Target._fields[2:]
     # Apart: whoever keeps the picture alone does not keep the memory of the stages.

@@ -1,25 +1,29 @@
 """Images, meshes, depth images, stage dumps: everything that touches a file."""
 
-from ibr_ref.io.files import check_writable
 from ibr_ref.io.frame import Frame
 from ibr_ref.io.images import check_image_writable, read_image, write_image
 from ibr_ref.io.meshes import read_mesh
-from ibr_ref.io.msr import read_msr
+from ibr_ref.io.msr import has_msr_picture, read_msr, read_msr_cameras
+from ibr_ref.io.outputs import check_writable
 from ibr_ref.io.simple_texture import read_simple_texture, write_simple_texture
 from ibr_ref.io.textures import read_color, read_height, read_normal, read_normal_height
+from ibr_ref.io.upright import read_upright
 
 __all__ = [
     "Frame",
     "check_image_writable",
     "check_writable",
+    "has_msr_picture",
     "read_color",
     "read_height",
     "read_image",
     "read_mesh",
     "read_msr",
+    "read_msr_cameras",
     "read_normal",
     "read_normal_height",
     "read_simple_texture",
+    "read_upright",
     "write_image",
     "write_simple_texture",
 ]

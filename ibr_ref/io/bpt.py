@@ -19,6 +19,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.io.words import real, shown, whole
+
 _CORNERS = 16
 _LARGEST = 1e300
 """Of a coordinate: weighted means of such do not overflow."""
@@ -44,8 +46,7 @@ class _Lines:
     """The lines that are not blank, read one after the other."""
 
     def __init__(self, data: bytes) -> None:
-        texts = data.decode("latin-1").split("\n")
-        rows = [(number, text.replace(",", " ").split()) for number, text in enumerate(texts, 1)]
+        rows = [(number, text.split()) for number, text in enumerate(data.replace(b",", b" ").split(b"\n"), 1)]
         self.rows = [(number, words) for number, words in rows if words]
         self.place = 0
 
@@ -54,7 +55,7 @@ class _Lines:
         """Words in the line that comes next; 0 at the end."""
         return len(self.rows[self.place][1]) if self.place < len(self.rows) else 0
 
-    def words(self, allowed: str) -> list[str]:
+    def words(self, allowed: str) -> list[bytes]:
         """Those of the next line, which goes on being the one that `refused` names."""
         if self.place == len(self.rows):
             raise ValueError(f"found the end of the file, allowed: {allowed}")
@@ -64,13 +65,13 @@ class _Lines:
     def refused(self, allowed: str) -> ValueError:
         """The error for the line read last."""
         number, words = self.rows[self.place - 1]
-        return ValueError(f"found {' '.join(words)[:60]!r} in line {number}, allowed: {allowed}")
+        return ValueError(f"found {shown(words)} in line {number}, allowed: {allowed}")
 
     def whole(self, amount: int, most: int, allowed: str) -> list[int]:
         """A line of so many numbers from 1 to `most`."""
         words = self.words(allowed)
         try:
-            numbers = [int(word) for word in words]
+            numbers = [whole(word) for word in words]
         except ValueError:
             raise self.refused(allowed) from None
         if len(numbers) != amount or min(numbers) < 1 or max(numbers) > most:
@@ -86,7 +87,7 @@ class _Lines:
         allowed = f"x, y and z, numbers between {-_LARGEST:g} and {_LARGEST:g}"
         words = self.words(allowed)
         try:
-            numbers = [float(word) for word in words]
+            numbers = [real(word) for word in words]
         except ValueError:
             raise self.refused(allowed) from None
         if len(numbers) != 3 or not all(abs(number) <= _LARGEST for number in numbers):
@@ -118,7 +119,7 @@ def _one_after_the_other(lines: _Lines, count: int) -> NDArray[np.float64]:
     points = []
     for _ in range(count):
         allowed = "3 3, the degrees of a bicubic patch"
-        if lines.words(allowed) != ["3", "3"]:
+        if lines.words(allowed) != [b"3", b"3"]:
             raise lines.refused(allowed)
         points.append([lines.point() for _ in range(_CORNERS)])
     return np.reshape(points, (count, 4, 4, 3))

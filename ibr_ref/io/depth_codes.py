@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.io import png
 from ibr_ref.io.files import contents, naming
+from ibr_ref.scene.checks import named
 
 _BITS, _BITS_ALLOWED = 24, (8, 16)
 """The byte of a PNG file that holds the bits of a sample."""
@@ -22,7 +23,7 @@ def depth_codes(path: str | PathLike[str], alpha: bool = False) -> tuple[NDArray
     """
     data = contents(path)
     if not data.startswith(png.SIGNATURE):
-        raise ValueError(f"{path}: found a file that starts with {data[:8]!r}, allowed for depths: a PNG image")
+        raise ValueError(f"{named(path)}: found a file that starts with {data[:8]!r}, allowed for depths: a PNG image")
     with naming(path):
         image = png.decode(data)
         if data[_BITS] not in _BITS_ALLOWED:

@@ -1,18 +1,23 @@
-"""Files that are read whole, and files that are written completely or not at all."""
+"""Files that are read whole, and the errors of those who decode them."""
 
 from __future__ import annotations
 
-import os
+import re
 import stat
-import tempfile
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
-from typing import BinaryIO, cast
+
+import numpy as np
+
+from ibr_ref.scene.checks import LONGEST_MESSAGE, named, one_line
 
 _MAX_BYTES = 2**32
 """Twice the samples of the largest 16-bit image: what is larger is a mistake, not an input."""
+_OURS = re.compile(r"\bfound\b.*\b(allowed|needed)\b|\b(is|are) needed$|cannot be read \(|does not fit in memory")
+"""How the errors of this package are worded."""
 
 
 def contents(path: str | PathLike[str]) -> bytes:
@@ -27,68 +32,32 @@ def contents(path: str | PathLike[str]) -> bytes:
         if stat.S_ISREG(status.st_mode) and 0 < status.st_size <= _MAX_BYTES:
             return path.read_bytes()
     except OSError as error:
-        raise type(error)(f"{path}: cannot be read ({error.strerror})") from None
+        raise type(error)(f"{named(path)}: cannot be read ({error.strerror})") from None
+    except ValueError:  # a zero byte in the name
+        raise ValueError(f"{named(path)}: found no file's name, allowed: one") from None
     if stat.S_ISDIR(status.st_mode):
-        raise IsADirectoryError(f"{path}: is a folder, a file is needed")
+        raise IsADirectoryError(f"{named(path)}: is a folder, a file is needed")
     if not stat.S_ISREG(status.st_mode):
-        raise OSError(f"{path}: is a device or a pipe, a file is needed")
-    raise ValueError(f"{path}: found {status.st_size} bytes, allowed: 1 to 2^32")
+        raise OSError(f"{named(path)}: is a device or a pipe, a file is needed")
+    raise ValueError(f"{named(path)}: found {status.st_size} bytes, allowed: 1 to 2^32")
 
 
 @contextmanager
 def naming(path: str | PathLike[str]) -> Iterator[None]:
     """Around a decoder: whatever it raises comes out as a ValueError of one line that starts with the path.
 
-    OSError where memory does not suffice.
+    What a library says of bad data is for its own users, with their calls, versions and addresses, and can be as long as
+    the data: it is replaced. Nor does any warning get out: what makes no numbers is refused, and said once. OSError where
+    memory does not suffice.
     """
     try:
-        yield
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            yield
     except MemoryError:
-        raise OSError(f"{path}: does not fit in memory") from None
-    except (OSError, SyntaxError, ValueError) as error:
-        raise ValueError(f"{path}: {' '.join(str(error).split())}") from None
+        raise OSError(f"{named(path)}: does not fit in memory") from None
     except Exception as error:  # bad data break the decoders of others in any way
-        raise ValueError(f"{path}: is damaged ({type(error).__name__} {' '.join(str(error).split())})") from None
-
-
-@contextmanager
-def atomic(path: str | PathLike[str]) -> Iterator[BinaryIO]:
-    """Write to a temporary file beside `path`, which takes the name only if the block ends well.
-
-    Raises OSError with the path where it cannot be written.
-    """
-    path = Path(path)
-    if os.path.isdir(path):  # Path.is_dir raises for names that are too long
-        raise IsADirectoryError(f"{path}: is a folder, a file name is needed")
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"{path}: the folder {path.parent} does not exist")
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    except OSError as error:
-        raise OSError(f"{path}: cannot be written ({error.strerror})") from None
-    try:
-        with os.fdopen(handle, "wb") as file:
-            yield cast(BinaryIO, file)
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(name, 0o666 & ~umask)
-        os.replace(name, path)
-    except BaseException as error:
-        Path(name).unlink(missing_ok=True)
-        if isinstance(error, OSError) and error.strerror:
-            # A full disk, say: the system's own message names the temporary file, or none.
-            raise OSError(f"{path}: cannot be written ({error.strerror})") from None
-        raise
-
-
-class _TrialOver(Exception):  # noqa: N818, it is no error
-    """Ends the trial of `check_writable`."""
-
-
-def check_writable(path: str | PathLike[str]) -> None:
-    """Raise what `atomic` would, before long work; nothing is written."""
-    try:
-        with atomic(path):
-            raise _TrialOver
-    except _TrialOver:
-        pass
+        text = one_line(error, LONGEST_MESSAGE)
+        if not (isinstance(error, (OSError, ValueError)) and _OURS.search(text)):
+            text = "found what cannot be decoded, allowed: a file of this kind, whole and undamaged"
+        raise ValueError(f"{named(path)}: {text}") from None

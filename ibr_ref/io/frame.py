@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.io.files import atomic
 from ibr_ref.io.images import write_image
+from ibr_ref.io.outputs import atomic
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,16 +10,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.io import jpeg, png
-from ibr_ref.io.files import atomic, check_writable, contents, naming
+from ibr_ref.io.files import contents, naming
+from ibr_ref.io.orientation import orientation, upright
+from ibr_ref.io.outputs import atomic, check_writable, is_stream
+from ibr_ref.scene.checks import named, one_line
 
-_DECODERS = {png.SIGNATURE: png.decode, jpeg.SIGNATURE: jpeg.decode}
+_CODECS = (png, jpeg)
 _FORMATS = {".png": ".png", ".jpg": ".jpg", ".jpeg": ".jpg"}
 _OPTIONS: dict[str, dict[str, int]] = {".png": {}, ".jpg": {"quality": 95, "subsampling": 0}}
 _MAX_JPEG_SIDE = 65535
 
 
-def read_image(path: str | PathLike[str]) -> NDArray[np.float64]:
+def read_image(path: str | PathLike[str], exif: bool = True) -> NDArray[np.float64]:
     """Read a PNG or JPEG image, told apart by content: row 0 on top, values k / 255 or, with 16 bits, k / 65535.
+
+    exif: turn it as its Exif tag Orientation says, and as viewers show it; False: the rows as they are stored.
 
     Returns (H, W) for grey (1, 2, 4 bits and 16 too), (H, W, 2) for grey + alpha, (H, W, 3) for RGB, (H, W, 4) for
     RGB + alpha (not premultiplied); palettes come out as RGB, with alpha if they have transparent entries.
@@ -28,18 +33,20 @@ def read_image(path: str | PathLike[str]) -> NDArray[np.float64]:
     is not all there, or has no pixels or more than 2^28 (the header is asked before anything is decoded).
     """
     data = contents(path)
-    for signature, decode in _DECODERS.items():
-        if data.startswith(signature):
+    for codec in _CODECS:
+        if data.startswith(codec.SIGNATURE):
             with naming(path):
-                return decode(data)
-    raise ValueError(f"{path}: found a file that starts with {data[:8]!r}, allowed: a PNG or JPEG image")
+                image = codec.decode(data)
+                return upright(image, orientation(codec.exif(data))) if exif else image
+    raise ValueError(f"{named(path)}: found a file that starts with {data[:8]!r}, allowed: a PNG or JPEG image")
 
 
 def write_image(path: str | PathLike[str], image: ArrayLike, bits: int = 8) -> None:
     """Write (H, W) grey or (H, W, 3) RGB, clamped to [0, 1], as floor(c (2^bits - 1) + 0.5).
 
     The name's ending gives the format: .png, or .jpg / .jpeg (quality 95, chroma at full resolution). `bits` is 8, or
-    16 for grey PNG. The file is written beside its place and then renamed.
+    16 for grey PNG. The file is written beside its place and then renamed; a link is followed, a pipe or a character
+    device (as a PNG if its name has no ending) written to.
 
     Raises OSError or ValueError, with the path, for other endings, folders that cannot be written, other shapes, values
     that are not floats (or bools), and NaN.
@@ -47,7 +54,9 @@ def write_image(path: str | PathLike[str], image: ArrayLike, bits: int = 8) -> N
     kind = _kind(path, bits)
     samples = _quantized(path, image, bits)
     if kind == ".jpg" and max(samples.shape) > _MAX_JPEG_SIDE:
-        raise ValueError(f"{path}: found an image of shape {samples.shape}, allowed in JPEG: {_MAX_JPEG_SIDE} each way")
+        raise ValueError(
+            f"{named(path)}: found an image of shape {samples.shape}, allowed in JPEG: {_MAX_JPEG_SIDE} each way"
+        )
     data = _encoded(samples, kind)
     with atomic(path) as file:
         file.write(data)
@@ -61,11 +70,13 @@ def check_image_writable(path: str | PathLike[str]) -> None:
 
 def _kind(path: str | PathLike[str], bits: int) -> str:
     ending = Path(path).suffix
+    if not ending and is_stream(path):
+        return ".png"
     if ending.lower() not in _FORMATS:
-        raise ValueError(f"{path}: found the ending {ending!r}, allowed: {', '.join(_FORMATS)}")
+        raise ValueError(f"{named(path)}: found the ending {one_line(repr(ending))}, allowed: {', '.join(_FORMATS)}")
     kind = _FORMATS[ending.lower()]
     if bits != 8 and (bits, kind) != (16, ".png"):
-        raise ValueError(f"{path}: found bits = {bits!r}, allowed: 8, or 16 in a grey PNG")
+        raise ValueError(f"{named(path)}: found bits = {bits!r}, allowed: 8, or 16 in a grey PNG")
     return kind
 
 
@@ -73,14 +84,16 @@ def _quantized(path: str | PathLike[str], image: ArrayLike, bits: int) -> NDArra
     """Conventions, Numbers: floor(255 c + 0.5) after clamping."""
     values = np.asarray(image)
     if values.ndim not in (2, 3) or (values.ndim == 3 and values.shape[2] != 3) or not values.size:
-        raise ValueError(f"{path}: found an image of shape {values.shape}, allowed: (H, W) or (H, W, 3), not empty")
+        raise ValueError(
+            f"{named(path)}: found an image of shape {values.shape}, allowed: (H, W) or (H, W, 3), not empty"
+        )
     if values.ndim == 3 and bits == 16:
-        raise ValueError(f"{path}: found an RGB image with bits = 16, allowed: 8, or 16 for grey")
+        raise ValueError(f"{named(path)}: found an RGB image with bits = 16, allowed: 8, or 16 for grey")
     if values.dtype.kind not in "fb":
         # 0 to 255, most likely: clamped to [0, 1], it would be white all over.
-        raise ValueError(f"{path}: found an image of {values.dtype}, allowed: floats in [0, 1]")
+        raise ValueError(f"{named(path)}: found an image of {values.dtype}, allowed: floats in [0, 1]")
     if np.isnan(values).any():
-        raise ValueError(f"{path}: found NaN at {np.argwhere(np.isnan(values))[0].tolist()}, allowed: numbers")
+        raise ValueError(f"{named(path)}: found NaN at {np.argwhere(np.isnan(values))[0].tolist()}, allowed: numbers")
     levels = float(2**bits - 1)
     steps = np.floor(np.clip(values.astype(np.float64), 0.0, 1.0) * levels + 0.5)
     return steps.astype(np.uint8 if bits == 8 else np.uint16)

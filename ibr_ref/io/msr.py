@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
@@ -80,6 +81,47 @@ def read_msr(
     depth image with unequal channels, near >= far, planes that are neither given nor known, a distortion other than 0.
     """
     frame = checks.whole("frame", frame, low=0, high=999)
+    set_ = _described(folder, cameras, near, far)
+    return tuple(_depth_image(set_, index, frame) for index in set_.indices)
+
+
+def read_msr_cameras(
+    folder: str | PathLike[str],
+    cameras: Sequence[int],
+    width: int,
+    height: int,
+    near: float | None = None,
+    far: float | None = None,
+) -> tuple[Camera, ...]:
+    """Read the cameras alone of an MSR 3D Video sequence, for pictures of width x height: no picture is looked for.
+
+    The calibration does not say how large the pictures are; those that `read_msr` reads do. near, far and errors as there.
+    """
+    set_ = _described(folder, cameras, near, far)
+    return tuple(set_.camera(index, width, height) for index in set_.indices)
+
+
+def has_msr_picture(folder: str | PathLike[str], frame: int, camera: int) -> bool:
+    """Whether a camera's colours and depths of a frame are in the folder: both files, whatever they hold."""
+    return all(path.exists() for path in _image_files(Path(folder), camera, frame))
+
+
+class _Set(NamedTuple):
+    """A data set's calibration, and the cameras that are asked for."""
+
+    path: Path
+    """Of the calibration file."""
+    indices: list[int]
+    calibrations: dict[int, _Calibration]
+    near: float
+    far: float
+
+    def camera(self, index: int, width: int, height: int) -> Camera:
+        with naming(f"{self.path}: camera {index}"):
+            return _camera(self.calibrations[index], width, height, self.near, self.far)
+
+
+def _described(folder: str | PathLike[str], cameras: Sequence[int], near: float | None, far: float | None) -> _Set:
     if not isinstance(cameras, Sequence) or not cameras:
         raise checks.reject("cameras", cameras, "a sequence of camera numbers, at least one")
     indices = [checks.whole(f"cameras[{i}]", camera, low=0, high=2**31) for i, camera in enumerate(cameras)]
@@ -91,17 +133,17 @@ def read_msr(
     missing = [index for index in indices if index not in calibrations]
     if missing:
         has = ", ".join(map(str, sorted(calibrations)))
-        raise ValueError(f"{path}: found no camera {missing[0]}, allowed: the cameras that it has, {has}")
-    return tuple(_depth_image(path, index, frame, calibrations[index], near, far) for index in indices)
+        raise ValueError(f"{checks.named(path)}: found no camera {missing[0]}, allowed: the cameras that it has, {has}")
+    return _Set(path, indices, calibrations, near, far)
 
 
 def _calibration_file(folder: Path) -> Path:
-    if not folder.is_dir():
-        raise NotADirectoryError(f"{folder}: is no folder, one with {_PREFIX}NAME.txt is needed")
+    if not os.path.isdir(folder):  # Path.is_dir raises for names that are too long
+        raise NotADirectoryError(f"{checks.named(folder)}: is no folder, one with {_PREFIX}NAME.txt is needed")
     found = sorted(folder.glob(f"{_PREFIX}*.txt"))
     if len(found) != 1:
-        names = ", ".join(path.name for path in found) or "none"
-        raise FileNotFoundError(f"{folder}: found {names}, needed: one file {_PREFIX}NAME.txt")
+        names = checks.one_line(", ".join(path.name for path in found)) or "none"
+        raise FileNotFoundError(f"{checks.named(folder)}: found {names}, needed: one file {_PREFIX}NAME.txt")
     return found[0]
 
 
@@ -110,7 +152,9 @@ def _planes(path: Path, near: float | None, far: float | None) -> tuple[float, f
     if (near is None or far is None) and name not in _PLANES:
         known = ", ".join(_PLANES)
         field = "near" if near is None else "far"
-        raise ValueError(f"{path}: {field}: found None, allowed: a number, or None for the sequences {known}")
+        raise ValueError(
+            f"{checks.named(path)}: {field}: found None, allowed: a number, or None for the sequences {known}"
+        )
     planes = _PLANES.get(name, (0.0, 0.0))
     near = checks.number("near", planes[0] if near is None else near, above=0.0)
     far = checks.number("far", planes[1] if far is None else far)
@@ -144,20 +188,26 @@ def _number(word: str) -> float:
         raise ValueError(f"found {word[:40]!r}, allowed: finite numbers") from None
 
 
-def _depth_image(path: Path, index: int, frame: int, calibration: _Calibration, near: float, far: float) -> DepthImage:
-    depth_path = _image_file(path.parent, index, f"depth-cam{index}-f{frame:03d}.png")
-    color_path = _image_file(path.parent, index, f"color-cam{index}-f{frame:03d}.jpg")
-    (codes, last), color = depth_codes(depth_path), read_color(color_path)
+def _depth_image(set_: _Set, index: int, frame: int) -> DepthImage:
+    color_path, depth_path = _image_files(set_.path.parent, index, frame)
+    (codes, last), color = depth_codes(depth_path), read_color(color_path, exif=False)
     height, width = codes.shape
     if color.shape[:2] != codes.shape:
         found = f"{color.shape[1]} x {color.shape[0]} pixels"
-        raise ValueError(f"{color_path}: found {found}, allowed: {width} x {height}, the size of {depth_path.name}")
-    with naming(f"{path}: camera {index}"):
-        camera = _camera(calibration, width, height, near, far)
-    z = 1.0 / (codes / last * (1.0 / near - 1.0 / far) + 1.0 / far)
+        raise ValueError(
+            f"{checks.named(color_path)}: found {found}, allowed: {width} x {height}, the size of {depth_path.name}"
+        )
+    camera, calibration = set_.camera(index, width, height), set_.calibrations[index]
+    z = 1.0 / (codes / last * (1.0 / set_.near - 1.0 / set_.far) + 1.0 / set_.far)
     row, column = np.arange(height - 1.0, -1.0, -1.0)[:, None], np.arange(float(width))[None, :]
     depth = (z - calibration.center_z) / calibration.ray_z(column, row)
     return DepthImage(color=color, depth=depth, camera=camera)
+
+
+def _image_files(folder: Path, index: int, frame: int) -> tuple[Path, Path]:
+    """Of the colours and of the depths."""
+    ending = f"cam{index}-f{frame:03d}"
+    return _image_file(folder, index, f"color-{ending}.jpg"), _image_file(folder, index, f"depth-{ending}.png")
 
 
 def _image_file(folder: Path, index: int, name: str) -> Path:

@@ -43,6 +43,8 @@ class _Header(NamedTuple):
 def decode(data: bytes) -> NDArray[np.float64]:
     """Decode a PNG file, k / (2^bits - 1), to (H, W), or (H, W, C): C = 2 grey + alpha, 3 RGB, 4 RGB + alpha.
 
+    The rows are those that are stored.
+
     Palettes are expanded. A colour key (tRNS without a palette) is not an alpha channel: the stored colours stay.
     Raises ValueError or one of Pillow's errors for a file that is damaged, cut off or too large.
     """
@@ -56,9 +58,14 @@ def decode(data: bytes) -> NDArray[np.float64]:
     return _samples(_joined(chunks), header)
 
 
+def exif(data: bytes) -> bytes | None:
+    """The Exif tags of a file that `decode` accepts."""
+    return next((body for kind, body in _chunks(data) if kind == b"eXIf"), None)
+
+
 def _header(data: bytes) -> _Header:
     if len(data) < 33 or data[12:16] != b"IHDR":
-        raise ValueError(f"found {len(data)} bytes that start as a PNG image, but not its header of 33 bytes")
+        raise ValueError(f"found {len(data)} bytes that start as a PNG image, allowed: its header of 33 bytes first")
     header = _Header(*struct.unpack(">IIBBBBB", data[16:29]))
     if header.bits not in _BITS.get(header.color_type, ()) or header.interlace > 1 or header[4:6] != (0, 0):
         raise ValueError(f"found a PNG header {tuple(header)}, allowed: the combinations of the PNG standard")
@@ -73,7 +80,7 @@ def _chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
         end = start + 12 + length
         if end > len(data):
             raise ValueError(
-                f"found the first {len(data)} bytes of a PNG image, at least {max(end, start + 12)} needed"
+                f"found a truncated PNG image of {len(data)} bytes, allowed: at least {max(end, start + 12)}"
             )
         kind, body = data[start + 4 : start + 8], data[start + 8 : end - 4]
         if zlib.crc32(kind + body) != int.from_bytes(data[end - 4 : end]):
@@ -105,13 +112,21 @@ def _stream_size(header: _Header) -> int:
 
 
 def _check_stream(compressed: bytes, needed: int) -> None:
-    """Inflate without keeping, so that no header makes us allocate an image that is not there."""
+    """Inflate without keeping, so that no header makes us allocate an image that is not there.
+
+    The stream must come to its end, and its checksum be right; what goes on beyond the pixels is not looked at.
+    """
     inflate, view, size = zlib.decompressobj(), memoryview(compressed), 0
-    for start in range(0, len(view), _SLICE):
-        size += len(inflate.decompress(view[start : start + _SLICE]))
-        if size >= needed:
-            return
-    raise ValueError(f"found {size} bytes of PNG pixels, {needed} needed for the size in its header")
+    try:
+        for start in range(0, len(view), _SLICE):
+            size += len(inflate.decompress(view[start : start + _SLICE]))
+            if size > needed or (size == needed and inflate.eof):
+                return
+    except zlib.error:
+        raise ValueError("found a damaged PNG image, allowed: compressed pixels with a right checksum") from None
+    if size < needed:
+        raise ValueError(f"found {size} bytes of PNG pixels, {needed} needed for the size in its header")
+    raise ValueError("found a truncated PNG image, allowed: one whose compressed pixels come to their end")
 
 
 def _samples(data: bytes, header: _Header) -> NDArray[np.float64]:

@@ -37,8 +37,9 @@ from numpy.typing import NDArray
 
 from ibr_ref.io.afx_fields import fields_of
 from ibr_ref.io.depth_codes import depth_codes
-from ibr_ref.io.files import atomic, check_writable, contents, naming
+from ibr_ref.io.files import contents, naming
 from ibr_ref.io.images import write_image
+from ibr_ref.io.outputs import atomic, check_writable
 from ibr_ref.io.textures import read_color
 from ibr_ref.io.xmt import DepthImageNode, depth_image_node, depth_images
 from ibr_ref.scene import Camera, DepthImage, checks
@@ -94,12 +95,14 @@ def read_simple_texture(path: str | PathLike[str]) -> tuple[DepthImage, ...]:
 
 
 def _image(node: DepthImageNode, where: str) -> DepthImage:
-    color = read_color(node.color)
+    color = read_color(node.color, exif=False)
     codes, last = depth_codes(node.depth or node.color, alpha=node.depth is None)
     height, width = codes.shape
     if color.shape[:2] != codes.shape:
         found = f"{color.shape[1]} x {color.shape[0]} pixels"
-        raise ValueError(f"{node.color}: found {found}, allowed: {width} x {height}, the size of {node.depth}")
+        raise ValueError(
+            f"{checks.named(node.color)}: found {found}, allowed: {width} x {height}, the size of {node.depth}"
+        )
     with naming(where):
         camera = Camera.axis_angle(
             position=node.fields.position,
@@ -129,10 +132,14 @@ def write_simple_texture(path: str | PathLike[str], images: Sequence[DepthImage]
     """
     path = Path(path)
     if not path.stem.isprintable() or set(path.stem) & set('"\\:'):
-        raise ValueError(f'{path}: found the name {path.stem!r}, allowed: printable characters other than " \\ :')
+        raise ValueError(
+            f'{checks.named(path)}: found the name {path.stem!r}, allowed: printable characters other than " \\ :'
+        )
     images = tuple(images) if isinstance(images, Sequence) else ()
     if not images or not all(isinstance(image, DepthImage) for image in images):
-        raise ValueError(f"{path}: images: found something else or none, allowed: a sequence of DepthImages")
+        raise ValueError(
+            f"{checks.named(path)}: images: found something else or none, allowed: a sequence of DepthImages"
+        )
     check_writable(path)
     names = [[f"{path.stem}-{i:03d}-{kind}.png" for kind in ("color", "depth")] for i in range(len(images))]
     nodes = ""

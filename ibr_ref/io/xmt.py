@@ -104,7 +104,9 @@ def _parsed(data: bytes) -> Element:
 
 
 def _refuse_doctype(name: str, *_: object) -> NoReturn:
-    raise ValueError(f"found a document type ({name!r}), allowed: XML without one, hence without entities")
+    raise ValueError(
+        f"found a document type ({checks.one_line(repr(name))}), allowed: XML without one, hence without entities"
+    )
 
 
 def _name(element: Element) -> str:

@@ -48,6 +48,7 @@ def depth_rig(mesh: Mesh, count: int = 9, *, size: int = 192) -> list[DepthImage
     if count not in COUNTS:
         raise checks.reject("count", count, " | ".join(map(str, COUNTS)))
     size = checks.whole("size", size, low=1, high=MOST_PIXELS)
+    mesh = mesh.compact()
     center, radius = _sphere_around(mesh)
     return [depth_image(mesh, _camera(center, radius, direction, size)) for direction in directions(count)]
 
@@ -87,8 +88,7 @@ def depth_image(mesh: Mesh, camera: Camera) -> DepthImage:
 
 def _sphere_around(mesh: Mesh) -> tuple[Array, float]:
     """The middle of the bounding box, and the distance from there to the farthest vertex."""
-    used = np.asarray(mesh.vertices)[np.unique(mesh.triangles)]
-    low, high = used.min(axis=0), used.max(axis=0)
+    used, (low, high) = mesh.corners, mesh.bounds
     if not np.abs(used).max() <= _FARTHEST:
         raise checks.reject(
             "mesh.vertices", float(np.abs(used).max()), f"numbers between {-_FARTHEST:g} and {_FARTHEST:g}"

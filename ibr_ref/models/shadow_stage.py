@@ -32,22 +32,32 @@ def shadow_stage(
     target: ArrayLike = (0.15, 0.35, -0.1),
     width: int = 640,
     height: int = 480,
+    near: float | None = None,
+    far: float | None = None,
 ) -> Scene:
     """A scene for `ibr_ref.shadows`: the caster, z up, scaled to a largest extent of 1, over a floor with two steps.
 
+    Vertices of no triangle are left out.
     offset: (x, y), each from -0.6 to 0.6: the object moves along the world's x and y. light_size: half the side of the
-    square light, world units, >= 0. eye, target: the camera's, world space; width, height: its picture, pixels.
+    square light, world units, >= 0. eye, target: the camera's, world space; width, height: its picture, pixels. near, far:
+    of its planes; None: around all that is there.
     Raises ValueError for a mesh that is none or has no extent, and what makes no scene.
     """
     if not isinstance(caster, Mesh):
         raise checks.reject("caster", type(caster).__name__, "a Mesh")
     half = checks.number("light_size", light_size, low=0.0)
+    place = checks.vector("offset", offset, 2)
+    receivers, scaled = _receivers(), _scaled(caster.compact())
+    above = np.array_equal(checks.vector("eye", eye)[:2], checks.vector("target", target)[:2])
+    up = (0.0, 1.0, 0.0) if above else (0.0, 0.0, 1.0)
+    camera = Camera.look_at(eye=eye, target=target, up=up, vertical_fov=40.0, width=width, height=height)
+    around = np.concatenate([*(mesh.bounds for mesh in receivers), scaled.bounds + np.append(place, 0.0)])
     return Scene(
-        receivers=_receivers(),
-        caster=_scaled(caster),
+        receivers=receivers,
+        caster=scaled,
         offset_axes=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
         offset_range=((-REACH, REACH), (-REACH, REACH)),
-        offset=offset,
+        offset=place,
         light=AreaLight(
             position=_LIGHT,
             target=(0.0, 0.0, 0.0),
@@ -57,18 +67,21 @@ def shadow_stage(
             far=12.0,
             half_edges=((half, 0.0, 0.0), (0.0, half, 0.0)),
         ),
-        camera=Camera.look_at(
-            eye=eye, target=target, up=(0, 0, 1), vertical_fov=40.0, near=0.1, far=30.0, width=width, height=height
-        ),
+        camera=camera.fitted(_corners(around), near=near, far=far),
         ambient=0.25,
         background=(0.82, 0.88, 0.94),
     )
 
 
+def _corners(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(8, 3) of the box around points (N, 3)."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    return np.array([[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)])
+
+
 def _scaled(mesh: Mesh) -> Mesh:
     """Its largest extent 1, the middle of its bounding box above the origin, its lowest point just above the floor."""
-    vertices = np.asarray(mesh.vertices)
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    vertices, (low, high) = np.asarray(mesh.vertices), mesh.bounds
     extent = float((high - low).max())
     if not 0.0 < extent < math.inf:
         raise checks.reject("caster.vertices", f"a box from {low.tolist()} to {high.tolist()}", "an extent > 0")

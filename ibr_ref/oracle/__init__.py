@@ -9,6 +9,9 @@
     print(examination.verdict.words())
     oracle.write_report(examination, "verdict.html")
 
+Every stage is judged on the port's own arrays: `referees.reads` says for each array which. `undefined` lists what the APIs
+leave undefined, and why no case depends on it.
+
 What a correct port may do differently is stated by devices (`device.PROFILES`), each number with the clause that grants it.
 From them `accept` derives bounds, and a referee for each method follows every decision whose margin is below its bound both
 ways: so a port is never accused for a pixel that may legally fall on the other side, and never cleared for one that may not.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,8 +37,17 @@ def _others(case: Case) -> Iterator[tuple[str, NDArray[np.float64]]]:
     """Pictures of the method's other built-in cases of that size; of other methods all kernels would have to be compiled."""
     size = case.scene.camera.width, case.scene.camera.height
     for name in names(case.method):
-        if name == case.name:
-            continue
-        other = build(name)
-        if (other.scene.camera.width, other.scene.camera.height) == size:
-            yield name, other.frame.color
+        if name != case.name and _size(name) == size:
+            yield name, _picture(name)
+
+
+@cache
+def _size(name: str) -> tuple[int, int]:
+    """Width and height of a built-in case; asked for at every wrong image, and some cases take seconds to build."""
+    camera = build(name).scene.camera
+    return camera.width, camera.height
+
+
+@cache
+def _picture(name: str) -> NDArray[np.float64]:
+    return build(name).frame.color

@@ -26,6 +26,11 @@ class Device:
     """Relative error of a quotient, in units of 2^-24."""
     root: float
     """Relative error of a square root, in units of 2^-24."""
+    logarithm: float
+    """Error of log2 x, in units of 2^-24: absolute where |log2 x| < 1, relative elsewhere. A power may be
+    exp2(e log2 x)."""
+    exponential: float
+    """Relative error of exp2 x, in units of (1 + |x|) 2^-24."""
     weight_step: float
     """Steps of bilinear weights, in [0, 1]; a weight may be off by less than one. 0: weights are floats."""
     subpixel_bits: int
@@ -69,6 +74,8 @@ IEEE32 = Device(
     operation=1.0,
     quotient=1.0,
     root=1.0,
+    logarithm=1.0,
+    exponential=1.0,
     weight_step=0.0,
     subpixel_bits=8,
     subpixel_any=False,
@@ -81,6 +88,8 @@ IEEE32 = Device(
         "operation": "IEEE 754-2019, 4.3: correctly rounded",
         "quotient": "IEEE 754-2019, 5.4.1: division is correctly rounded",
         "root": "IEEE 754-2019, 5.4.1: squareRoot is correctly rounded",
+        "logarithm": "IEEE 754-2019, 9.2: log2 is correctly rounded",
+        "exponential": "IEEE 754-2019, 9.2: exp2 is correctly rounded",
         "weight_step": "a filter written out in float32 arithmetic",
         "subpixel_bits": "the conventions of this reference: 1/256 pixel",
         "subpixel_any": "the conventions of this reference: nearest, ties to even",
@@ -97,6 +106,8 @@ D3D11 = Device(
     operation=2.0,
     quotient=2.0,
     root=2.0,
+    logarithm=8.0,
+    exponential=8.0,
     weight_step=2.0**-8,
     subpixel_bits=8,
     subpixel_any=True,
@@ -109,6 +120,8 @@ D3D11 = Device(
         "operation": "Microsoft, Floating-point rules (Direct3D 11): +, -, * may be truncated, within 1 ULP",
         "quotient": f"{_D3D}, floating point rules: division within 1 ULP",
         "root": f"{_D3D}, floating point rules: square root within 1 ULP",
+        "logarithm": f"{_D3D}, log instruction: absolute error 2^-21 within [0.5, 2], relative 2^-21 beyond",
+        "exponential": f"{_D3D}, exp instruction: relative error 2^-21",
         "weight_step": f"{_D3D}, texture addressing: 8 fractional bits of filter weights",
         "subpixel_bits": f"{_D3D}, rasterizer: 16.8 fixed point window positions",
         "subpixel_any": f"{_D3D}, conversion to fixed point: within 0.6 ULP of the target",
@@ -125,6 +138,8 @@ VULKAN = Device(
     operation=1.0,
     quotient=5.0,
     root=9.0 + 2.0**-18,
+    logarithm=8.0,
+    exponential=6.0,
     weight_step=2.0**-8,
     subpixel_bits=8,
     subpixel_any=True,
@@ -137,6 +152,8 @@ VULKAN = Device(
         "operation": f"{_VULKAN}: OpFAdd, OpFSub, OpFMul correctly rounded",
         "quotient": f"{_VULKAN}: OpFDiv 2.5 ULP",
         "root": f"{_VULKAN}: sqrt inherited from 1.0 / inversesqrt, 2 ULP and 2.5 ULP",
+        "logarithm": f"{_VULKAN}: log2 3 ULP, absolute 2^-21 within [0.5, 2]; pow inherited from exp2(y log2(x))",
+        "exponential": f"{_VULKAN}: exp2 3 + 2 |x| ULP",
         "weight_step": "Vulkan 1.3, limits: subTexelPrecisionBits, 8 on desktop implementations (at least 4)",
         "subpixel_bits": "Vulkan 1.3, limits: subPixelPrecisionBits, 8 on desktop implementations (at least 4)",
         "subpixel_any": "Vulkan 1.3, Rasterization: the rounding to subPixelPrecisionBits is not specified",
@@ -153,6 +170,8 @@ WEBGPU = Device(
     operation=1.0,
     quotient=5.0,
     root=9.0 + 2.0**-18,
+    logarithm=8.0,
+    exponential=6.0,
     weight_step=2.0**-8,
     subpixel_bits=8,
     subpixel_any=True,
@@ -165,6 +184,8 @@ WEBGPU = Device(
         "operation": f"{_WGSL}: x + y, x - y, x * y correctly rounded",
         "quotient": f"{_WGSL}: x / y 2.5 ULP",
         "root": f"{_WGSL}: sqrt inherited from 1.0 / inverseSqrt, 2 ULP and 2.5 ULP",
+        "logarithm": f"{_WGSL}: log2 3 ULP, absolute 2^-21 within [0.5, 2]; pow inherited from exp2(y * log2(x))",
+        "exponential": f"{_WGSL}: exp2 3 + 2 |x| ULP",
         "weight_step": "WebGPU leaves filtering to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan",
         "subpixel_bits": "WebGPU leaves it to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan",
         "subpixel_any": "WebGPU, Rasterization: gives no rounding of positions",
@@ -181,6 +202,8 @@ GL = Device(
     operation=5.0 + 2.0**-18,
     quotient=11.0,
     root=11.0,
+    logarithm=12.0,
+    exponential=10.0,
     weight_step=2.0**-8,
     subpixel_bits=8,
     subpixel_any=True,
@@ -193,6 +216,8 @@ GL = Device(
         "operation": f"{_OPENGL}; taken here as a rounding and 2 ULP",
         "quotient": f"{_OPENGL}; taken here as a reciprocal and a product, each a rounding and 2 ULP",
         "root": f"{_OPENGL}; taken here as an inverse root and a reciprocal, each a rounding and 2 ULP",
+        "logarithm": f"{_OPENGL}; taken here as Vulkan's and 2 ULP",
+        "exponential": f"{_OPENGL}; taken here as Vulkan's and 2 ULP",
         "weight_step": "OpenGL 4.6, Texture Minification, gives no precision of weights; 8 bits on desktop implementations",
         "subpixel_bits": "OpenGL 4.6, Implementation Dependent Values: SUBPIXEL_BITS at least 4, 8 on desktops",
         "subpixel_any": "OpenGL 4.6, Basic Polygon Rasterization: the rounding of window positions is not specified",

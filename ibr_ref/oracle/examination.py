@@ -12,8 +12,9 @@ from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.conventions import conventions
 from ibr_ref.oracle.device import PROFILES, Device
-from ibr_ref.oracle.judgement import Explains, Handed, Judgement
+from ibr_ref.oracle.judgement import Explains, Handed, Judgement, TraceRow
 from ibr_ref.oracle.referees import referee
+from ibr_ref.oracle.referees.rows import heading, text
 from ibr_ref.oracle.trials import Trial, judge, tightest
 from ibr_ref.oracle.verdict import Bias, Box, Cause, Outcome, StageVerdict, TraceStep, Verdict, Witness
 from ibr_ref.scene import checks
@@ -39,6 +40,8 @@ class Examination:
         return _first_wrong(self.judgements)
 
 
+# A port's numbers may be anything: what overflows or is no number on the way is told as an infinite bound, or as wrong.
+@np.errstate(all="ignore")
 def examine(case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = ()) -> Examination:
     """Judge a port's arrays, as `submission_from_arrays` or `load_submission` hands them on.
 
@@ -59,7 +62,7 @@ def examine(case: Case, handed: Handed, *, profile: str | None = None, problems:
         "profile": trial.device.name,
         "declared": profile is not None,
         "tried": tried,
-        "stages": tuple(_summary(j) for j in judgements),
+        "stages": tuple(_summary(case, trial.device, handed, j) for j in judgements),
     }
     image = next((j for j in judgements if j.stage == "image"), None)
     if image is not None:
@@ -76,7 +79,6 @@ def examine(case: Case, handed: Handed, *, profile: str | None = None, problems:
         )
     if wrong is not None:
         fields["first_wrong_stage"] = wrong.stage
-        fields["witness"] = _witness(case, trial.device, handed, wrong)
         fields["causes"] = _causes(case, trial.device, handed, wrong)
         if image is not None and image.wrong.any():
             fields["conventions"] = conventions(case, trial.device, handed, int(image.wrong.sum()))
@@ -103,9 +105,11 @@ def _median(judgement: Judgement) -> float | None:
     return float(np.median(widths)) if widths.size else None
 
 
-def _summary(judgement: Judgement) -> StageVerdict:
+def _summary(case: Case, device: Device, handed: Handed, judgement: Judgement) -> StageVerdict:
     wrong = np.argwhere(judgement.wrong)
     box = None
+    if judgement.places is not None:
+        wrong = judgement.places[judgement.wrong]
     if len(wrong):
         box = Box(first=tuple(wrong.min(axis=0).tolist()), last=tuple(wrong.max(axis=0).tolist()))
     counts = np.bincount(judgement.blame[judgement.wrong].clip(0), minlength=len(judgement.arrays))
@@ -120,6 +124,7 @@ def _summary(judgement: Judgement) -> StageVerdict:
         box=box,
         blamed={name: int(count) for name, count in zip(judgement.arrays, counts, strict=False) if count},
         median_width=_median(judgement),
+        witness=_witness(case, device, handed, judgement) if len(wrong) else None,
     )
 
 
@@ -131,17 +136,25 @@ def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -
     clear = np.argwhere(judgement.wrong & ~doubtful)
     index = tuple(int(i) for i in (clear if len(clear) else np.argwhere(judgement.wrong))[0])
     array = judgement.arrays[max(int(judgement.blame[index]), 0)]
-    rows = referee(case.method).trace(case, device, handed, judgement.stage, index)
-    bytes_ = array == "color" and np.asarray(handed[array]).dtype == np.uint8
+    rows = referee(case.method).trace(case, device, handed, judgement.part or judgement.stage, index)
+    # The head is a row of the trace: what the port is compared with is replayed, and need not be what the frame has.
+    head = heading(rows, array) or _from_the_frame(case, handed, array, judgement.place(index))
     return Witness(
         stage=judgement.stage,
-        element=judgement.element,
-        index=index,
+        element=head.element or judgement.element,
+        index=judgement.place(index) if head.index is None else head.index,
         array=array,
-        reference=_shown(_expected(case, array), index),
-        port=_shown(handed.get(array), index) + (" / 255" if bytes_ else ""),
+        reference=head.reference or "nothing",
+        port=head.port or "nothing",
         trace=tuple(
-            TraceStep(step=r.step, reference=r.reference, port=r.port, margin=r.margin, bound=r.bound, note=r.note)
+            TraceStep(
+                step=r.step,
+                reference=r.reference,
+                port=r.port,
+                margin=_finite(r.margin),
+                bound=_finite(r.bound),
+                note=r.note,
+            )
             for r in rows
         ),
     )
@@ -153,20 +166,14 @@ def _causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> tup
     return judge_of.causes(case, device, handed, wrong) if isinstance(judge_of, Explains) else None
 
 
-def _expected(case: Case, array: str) -> Any:
-    if array in ("color", "depth"):
-        return getattr(case.frame, array)
-    return case.frame.stages.get(array)
+def _finite(number: float | None) -> float | None:
+    """What JSON can hold: where nothing bounds a result, there is no bound."""
+    return number if number is not None and np.isfinite(number) else None
 
 
-def _shown(array: Any, index: tuple[int, ...]) -> str:
-    """An element's numbers; of an atlas's pages the first index is the page."""
-    if array is None:
-        return "nothing"
-    try:
-        value = np.asarray(array[index[0]][index[1:]] if isinstance(array, tuple) else array[index])
-    except IndexError:
-        return "nothing"
-    if value.size > 16:
-        return f"{value.size} numbers"
-    return np.array2string(value, precision=9, separator=", ", floatmode="maxprec").replace("\n", "")
+def _from_the_frame(case: Case, handed: Handed, array: str, index: tuple[int, ...]) -> TraceRow:
+    """What a trace that has no row of the array would begin with."""
+    frame = {"color": case.frame.color, "depth": case.frame.depth, **case.frame.stages}
+    found = [arrays[array] for arrays in (frame, handed)]
+    mine, theirs = (text(a[index[0]][index[1:]] if isinstance(a, tuple) else np.asarray(a)[index]) for a in found)
+    return TraceRow(step=array, reference=mine, port=theirs, array=array)

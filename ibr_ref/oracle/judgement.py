@@ -38,7 +38,17 @@ class Judgement:
     width: NDArray[np.float64]
     """Width of the accepted set of continuous results (the widest of the element's numbers); NaN where there is none."""
     blame: NDArray[np.int8]
-    """Index in `arrays` of the first one that disagrees; -1 where nothing does."""
+    """Index in `arrays`, which stand in order of computation, of the first one that disagrees; -1 where nothing does."""
+    places: NDArray[np.int64] | None = None
+    """(elements, k) where each of a row of elements stands in the arrays: page, row and column of an atlas. None: at its own
+    index."""
+
+    part: str = ""
+    """What `Referee.trace` is asked for where a stage has several kinds of elements: an array of this kind."""
+
+    def place(self, index: tuple[int, ...]) -> tuple[int, ...]:
+        """An element's index in the port's arrays."""
+        return index if self.places is None else tuple(self.places[index].tolist())
 
     def __post_init__(self) -> None:
         shapes = {a.shape for a in (self.wrong, self.undecided, self.width, self.blame)}
@@ -72,6 +82,12 @@ class TraceRow:
     """The most that the device's freedom can move it; smaller than the margin: the decision is certain."""
     note: str = ""
     """"certain", "either way is legal", "differs"."""
+    array: str = ""
+    """The port's array whose numbers these are, where the row is that of one: it heads the witness."""
+    index: tuple[int, ...] | None = None
+    """Where they stand in that array, if not at the element's own index."""
+    element: str = ""
+    """What stands there, if not such an element."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,7 +122,11 @@ class Referee(Protocol):
         """The final colour, and depth where it is handed in, from the case alone."""
 
     def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
-        """The computation of one element of a stage, reference and port side by side."""
+        """The computation of one element of a stage, reference and port side by side, replayed from the port's arrays.
+
+        stage, index: of its judgement, or `Judgement.part`. The numbers of each array that was handed in have a row that
+        says so (`TraceRow.array`).
+        """
 
     def parameters(self, case: Case) -> list[Parameter]:
         """The continuous parameters that move the image."""

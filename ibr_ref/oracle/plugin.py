@@ -75,12 +75,13 @@ class PortCase:
         The failure says the verdict in words and where its report is. profile: instead of `--ibr-profile`.
         """
         from ibr_ref import oracle
+        from ibr_ref.io.outputs import make_folder
 
         submission = oracle.submission_from_arrays(self.case, color=color, depth=depth, stages=stages)
         examination = oracle.check(self.case, submission, profile=profile or self._profile)
         verdict = examination.verdict
         if verdict.outcome is not type(verdict.outcome).PASS:
-            self._reports.mkdir(parents=True, exist_ok=True)
+            make_folder(self._reports)
             path = self._reports / f"{self.name}.html"
             oracle.write_report(examination, path)
             pytest.fail(f"{verdict.words()}\n  Report: {path}", pytrace=False)

@@ -43,11 +43,15 @@ class TraceStep(_Record):
 
 
 class Witness(_Record):
-    """One wrong element, the smallest: the first in reading order among those that lie farthest from any undecided one."""
+    """One wrong element, the smallest: the first in reading order among those that no undecided one touches.
+
+    Its numbers are a row of its trace: the reference's are replayed from the port's arrays of the stages before.
+    """
 
     stage: str
     element: str
     index: tuple[int, ...]
+    """In the array; of an atlas the page comes first, of several light samples the sample."""
     array: str
     reference: str
     port: str
@@ -72,6 +76,8 @@ class StageVerdict(_Record):
     """For each array in how many elements it is the first that disagrees."""
     median_width: float | None
     """Of the accepted sets of continuous results."""
+    witness: Witness | None = None
+    """Of a wrong stage."""
 
     @property
     def right(self) -> bool:
@@ -127,7 +133,6 @@ class Verdict(_Record):
     verdict is by that profile, else those of the first entry of `stages` that it calls wrong."""
     stages: tuple[StageVerdict, ...] = ()
     first_wrong_stage: str | None = None
-    witness: Witness | None = None
     causes: tuple[Cause, ...] | None = None
     """Known bugs that explain the stage; several: this case does not tell them apart; none: no known one does. None where
     none was looked for."""
@@ -139,8 +144,18 @@ class Verdict(_Record):
     median_width: float | None = None
     """Of the picture's accepted colours."""
 
+    @property
+    def witness(self) -> Witness | None:
+        """The first wrong stage's; each other wrong one has its own."""
+        return next(iter(self.witnesses), None)
+
+    @property
+    def witnesses(self) -> tuple[Witness, ...]:
+        """Of all wrong stages, in order."""
+        return tuple(stage.witness for stage in self.stages if stage.witness is not None)
+
     def words(self) -> str:
-        """The verdict for people: some ten lines, and how the witness is computed."""
+        """The verdict for people: some ten lines, and how each wrong stage's witness is computed, folded where long."""
         from ibr_ref.oracle.words import words
 
         return words(self)

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
+from itertools import groupby
 
+from ibr_ref.oracle.referees.rows import DIFFERS
 from ibr_ref.oracle.verdict import Outcome, StageVerdict, Verdict, Witness
+
+MOST_LINES = 30
+"""Of a trace; a longer one is folded."""
 
 
 def words(verdict: Verdict, *, trace: bool = True) -> str:
@@ -13,9 +18,9 @@ def words(verdict: Verdict, *, trace: bool = True) -> str:
     lines += [f"  {reason}" for reason in verdict.reasons]
     parts = Counter(stage.stage for stage in verdict.stages)
     lines += [_stage_line(stage, alone=parts[stage.stage] == 1) for stage in verdict.stages]
-    if verdict.witness is not None:
-        lines.append(_witness_line(verdict.witness))
-        lines += _trace_lines(verdict.witness) if trace else []
+    for witness in verdict.witnesses:
+        lines.append(_witness_line(witness, first=witness is verdict.witness))
+        lines += folded(_trace_lines(witness)) if trace else []
     lines += _causes(verdict)
     for convention in verdict.conventions:
         if convention.explains:
@@ -75,11 +80,28 @@ def _plural(element: str) -> str:
     return {"vertex": "vertices", "axis": "axes"}.get(element, f"{element}s")
 
 
-def _witness_line(witness: Witness) -> str:
+def _witness_line(witness: Witness, *, first: bool) -> str:
+    name = "Witness" if first else f"Witness of {witness.stage}"
     return (
-        f"  Witness: {witness.element} {list(witness.index)}, {witness.array}: "
+        f"  {name}: {witness.element} {list(witness.index)}, {witness.array}: "
         f"reference {witness.reference}, port {witness.port}."
     )
+
+
+def folded(lines: list[str]) -> list[str]:
+    """A long trace without its middle, but for what differs there."""
+    if len(lines) <= MOST_LINES:
+        return lines
+    ends = MOST_LINES // 3 + 1
+    kept = [i < ends or i >= len(lines) - ends for i in range(len(lines))]
+    most = (MOST_LINES - 2 * ends) // 2 - 1  # each of them parts a gap, which has a line of its own
+    for i in [i for i, line in enumerate(lines) if line.endswith(DIFFERS) and not kept[i]][:most]:
+        kept[i] = True
+    result: list[str] = []
+    for shown, run in groupby(zip(kept, lines, strict=True), key=lambda each: each[0]):
+        part = [line for _, line in run]
+        result += part if shown else [f"    ... {len(part):,} more, all in --json and --report"]
+    return result
 
 
 def _trace_lines(witness: Witness) -> list[str]:

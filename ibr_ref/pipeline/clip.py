@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ibr_ref.jit import device, routine
 from ibr_ref.pipeline.sampling import lerp
 
-_GUARD = 2097152.0  # 2^21: |x_ndc| up to 2^21/width is +-2^20 pixels
+GUARD = 2097152.0  # 2^21: |x_ndc| up to 2^21/width is +-2^20 pixels
 _MOST = 9  # vertices of a triangle after six planes
 _NEAR, _FAR, _LEFT, _RIGHT, _BOTTOM, _TOP = range(6)
 
@@ -153,7 +153,7 @@ def clip_triangles(
 
     clip (V, 4), varyings (V, K), indices (T, 3); the result keeps the triangles' order.
     """
-    guard_x, guard_y = _GUARD / width, _GUARD / height
+    guard_x, guard_y = GUARD / width, GUARD / height
     room = _most_triangles(clip, indices, guard_x, guard_y)
     out_clip = np.empty((room, 3, 4))
     out_varyings = np.empty((room, 3, varyings.shape[1]))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.scene import axis_angle, camera_path, checks, look_at
 from ibr_ref.scene.axis_angle import AxisAngle
+from ibr_ref.scene.fitted_planes import checked_points, fitted_planes
 from ibr_ref.scene.projection import (
     clip_from_intrinsics,
     depth_row,
@@ -116,6 +117,32 @@ class Camera:
     def perspective(self) -> bool:
         """Whether lines of sight meet in the eye."""
         return bool(self.eye[3] == 1.0)
+
+    def fitted(self, points: ArrayLike, *, near: float | None = None, far: float | None = None) -> Camera:
+        """The same view with near and far planes around points (N, 3) in world space, and all between them.
+
+        Tight where the eye is outside; an eye among the points gets a near plane at a millionth of the far one's distance.
+        near, far: kept where they are given. The picture stays as it is but for what the planes cut; depths change.
+        Raises ValueError for points that are none, and planes out of order.
+        """
+        above = 0.0 if self.perspective else -np.inf
+        near = None if near is None else checks.number("near", near, above=above)
+        far = None if far is None else checks.number("far", far, above=above)
+        if near is not None and far is not None:
+            planes(near, far, above)
+        near, far = fitted_planes(checked_points(points), self.view_from_world, self._widest(), near, far)
+        clip = self.clip_from_view.copy()
+        clip[2, 2:] = depth_row(near, far, self.perspective)
+        return replace(self, clip_from_view=clip, near=near, far=far)
+
+    def _widest(self) -> float | None:
+        """Tangent of the angle between the view axis and the picture's farthest corner; None: orthographic."""
+        if not self.perspective:
+            return None
+        (f_x, skew, c_x), (_, f_y, c_y) = self.intrinsics[:2].tolist()
+        down = [(row - c_y) / f_y for row in (0.0, float(self.height))]
+        squares = [((x - c_x - skew * y) / f_x) ** 2 + y * y for x in (0.0, float(self.width)) for y in down]
+        return float(np.sqrt(max(squares)))
 
     @classmethod
     def look_at(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,10 +14,34 @@ from numpy.typing import ArrayLike, NDArray
 Vector = tuple[float, float, float]
 
 
+LONGEST_VALUE, LONGEST_NAME, LONGEST_MESSAGE = 200, 600, 1500
+"""Characters that errors show of a value, of a file's name, and in all."""
+
+
 def reject(field: str, found: object, allowed: str) -> ValueError:
     """The error for a field's value: ``raise reject("height_scale", -1.0, "> 0")``."""
-    text = " ".join(repr(found).split())
-    return ValueError(f"{field}: found {text if len(text) <= 200 else text[:197] + '...'}, allowed: {allowed}")
+    try:
+        text = repr(found)
+    except Exception:  # a number with more digits than Python prints, say
+        text = f"a {type(found).__name__} that cannot be shown"
+    return ValueError(f"{field}: found {one_line(text)}, allowed: {allowed}")
+
+
+def one_line(text: object, longest: int = LONGEST_VALUE) -> str:
+    """What errors show of a text: on one line, nothing that a terminal obeys, the middle left out where it is too long."""
+    return _bounded(" ".join(str(text).split()), longest)
+
+
+def named(path: str | PathLike[str]) -> str:
+    """What errors call a file: its path, as `one_line` has it, but with its own spaces."""
+    return _bounded(str(Path(path)), LONGEST_NAME)
+
+
+def _bounded(text: str, longest: int) -> str:
+    if len(text) > longest:
+        half = (longest - 5) // 2
+        text = f"{text[:half]} ... {text[-half:]}"
+    return text if text.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def number(
@@ -64,6 +90,13 @@ def numbers(field: str, value: Any, allowed: str) -> NDArray[np.float64]:
         return np.array(array, np.float64, order="C")
     except (TypeError, ValueError, OverflowError):
         raise reject(field, value, allowed) from None
+
+
+def finite_rows(field: str, array: NDArray[np.float64]) -> None:
+    """Raise ValueError for the first row of an array (N, K) that is not finite."""
+    bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
+    if len(bad):
+        raise reject(f"{field}[{bad[0]}]", array[bad[0]].tolist(), "finite numbers")
 
 
 def vector(field: str, value: ArrayLike, length: int = 3) -> NDArray[np.float64]:

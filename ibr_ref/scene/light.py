@@ -29,7 +29,8 @@ class Light:
     specular: float = 0.0
     """Specular coefficient, >= 0."""
     exponent: int = 16
-    """Specular exponent, a whole number from 0 to 2^20: raised by repeated squaring."""
+    """Specular exponent, a whole number from 0 to 2^20: raised by repeated squaring. With 0 the highlight is `specular`
+    wherever the light falls, also where r.v <= 0; shading languages leave pow(0, 0) undefined, and no case has it."""
 
     def __post_init__(self) -> None:
         if (self.position is None) == (self.direction is None):

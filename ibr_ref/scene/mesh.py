@@ -29,9 +29,7 @@ class Mesh:
         vertices = checks.numbers("vertices", self.vertices, "an array (V, 3) of finite numbers")
         if vertices.ndim != 2 or vertices.shape[1] != 3 or not len(vertices):
             raise checks.reject("vertices.shape", vertices.shape, "(V, 3), V >= 1")
-        if not np.isfinite(vertices).all():
-            row = int(np.argwhere(~np.isfinite(vertices))[0, 0])
-            raise checks.reject(f"vertices[{row}]", vertices[row].tolist(), "finite numbers")
+        checks.finite_rows("vertices", vertices)
         object.__setattr__(self, "vertices", checks.frozen(vertices))
         object.__setattr__(self, "triangles", self._checked_triangles(len(vertices)))
         color = checks.numbers("color", self.color, f"(3,) or {vertices.shape} numbers in [0, 1]")
@@ -44,9 +42,24 @@ class Mesh:
 
     @cached_property
     def bounds(self) -> NDArray[np.float64]:
-        """(2, 3) the lowest and the highest coordinates of all vertices."""
-        vertices = np.asarray(self.vertices)
-        return checks.frozen(np.stack([vertices.min(axis=0), vertices.max(axis=0)]))
+        """(2, 3) the lowest and the highest coordinates of the corners of all triangles."""
+        corners = self.corners
+        return checks.frozen(np.stack([corners.min(axis=0), corners.max(axis=0)]))
+
+    @cached_property
+    def corners(self) -> NDArray[np.float64]:
+        """(U, 3) the vertices that triangles have, in their order: what a mesh extends to. Files have others as well."""
+        return checks.frozen(np.asarray(self.vertices)[np.unique(self.triangles)])
+
+    def compact(self) -> Mesh:
+        """The same triangles without the vertices of none."""
+        used, places = np.unique(self.triangles, return_inverse=True)
+        color = np.asarray(self.color)
+        return Mesh(
+            vertices=self.corners,
+            triangles=places.reshape(-1, 3),
+            color=color[used] if color.ndim == 2 else color,
+        )
 
     def _checked_triangles(self, count: int) -> NDArray[np.int32]:
         checks.numbers("triangles", self.triangles, "an array (T, 3) of whole numbers")

@@ -1,24 +1,27 @@
-"""Automatic control points: registration of warped on rendered maps, coarse to fine, from two simple placements.
+"""Automatic control points: registration of warped on rendered maps, coarse to fine, from simple placements.
 
 The paper places them by hand and leaves this open (section 5). The caster is rendered at training places all over its
-range; the points move until the maps that are warped there come near to the rendered ones. Two placements are started
-from: lines that divide the silhouette's bounding box, R of them downwards, and R of them across; other places than those
-trained at tell which of the two goes on.
+range; the points move until the maps that are warped there come near to the rendered ones, at the pace that the frame will
+have. Started from are lines that divide the silhouette's bounding box, R of them downwards, and R of them across; where a
+silhouette is cut by the map's border or missing, also those that divide the caster's own box, wherever it reaches to.
+What registration came to is then held against all that it was started from, and more, at places that served neither
+(`shadows.selection`), and the best of all is taken.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.shadows import maps, residuals
-from ibr_ref.shadows.controls import bounds, on_lattice, turned
-from ibr_ref.shadows.folds import unfolded
+from ibr_ref.shadows import folds, maps, residuals, training
+from ibr_ref.shadows.controls import along, bounds, identity, on_lattice, turned
+from ibr_ref.shadows.draw import grid_triangles
 from ibr_ref.shadows.registration import Task, register
-from ibr_ref.shadows.residuals import Places
+from ibr_ref.shadows.selection import HeldOut, Pace, Reach, best_of
 
 Array = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
@@ -29,7 +32,7 @@ class Level(NamedTuple):
     """A step from coarse to fine."""
 
     size: int
-    """Texels a side; never more than the maps themselves have."""
+    """Texels a side, more where the shadow takes up little of the map; never more than the maps themselves have."""
     side: int
     """Training places along either axis of a cell of the 3 x 3 positions."""
     steps: int
@@ -43,78 +46,69 @@ class Recipe(NamedTuple):
     """From each of the placements."""
     finish: tuple[Level, ...]
     """From the better one."""
+    held_out: int
+    """Places at which what was found is compared."""
 
 
 RECIPES = {
-    "fast": Recipe((Level(64, 2, 12),), (Level(128, 2, 8),)),
-    "best": Recipe((Level(64, 3, 40), Level(128, 3, 40)), (Level(256, 3, 40),)),
+    "fast": Recipe((Level(64, 2, 12),), (Level(128, 2, 8),), 32),
+    "best": Recipe((Level(64, 3, 40), Level(128, 3, 40)), (Level(256, 3, 40),), 128),
 }
 
-_SAMPLES = 4
-"""Coverage of 4 x 4 samples a texel: outlines then move smoothly."""
+_SMALL = 0.25
+"""Of the map's side: a shadow that is no longer is registered finer."""
 
 _MOST_POINTS = 4096
 """R C: the equations of more would take gigabytes."""
 
-_TRAINING, _OTHERS = 0.0, 0.5
-"""Phases of two sequences of places."""
 
-_R2 = (0.7548776662466927, 0.5698402909980532)
-"""Roberts' sequence in two dimensions: powers of 1 / 1.3247..., the root of x^3 = x + 1."""
+@dataclass(frozen=True)
+class Nine:
+    """What control points are placed for."""
 
+    view: maps.View
+    """What the maps are rendered of, at any size."""
+    positions: Array
+    """(3, 3, 2) of the nine maps."""
+    silhouettes: Array
+    """(3, 3, S, S) theirs, 0 to 1, as sharp as the maps."""
+    samples: int
+    """k of the maps."""
+    pace: Pace
 
-def _fractions(side: int, phase: float) -> Array:
-    """(side^2, 2) places in a cell, one in each of side x side squares."""
-    steps = np.arange(side * side)
-    jitter = [(phase + (steps + 1) * share) % 1.0 for share in _R2]
-    return np.stack([(steps % side + jitter[0]) / side, (steps // side + jitter[1]) / side], axis=1)
-
-
-def _smoothed(images: Array) -> Array:
-    """Images (N, S, S) under the binomial filter 1 2 1 along both axes."""
-    padded = np.pad(images, ((0, 0), (1, 1), (1, 1)), mode="edge")
-    across = (padded[:, :, :-2] + 2.0 * padded[:, :, 1:-1] + padded[:, :, 2:]) / 4.0
-    return (across[:, :-2] + 2.0 * across[:, 1:-1] + across[:, 2:]) / 4.0
-
-
-def _rendered(view: maps.View, offsets: Array, size: int) -> Array:
-    """(N, S, S) silhouettes, smoothed."""
-    levels = maps.levels(_SAMPLES)
-    return _smoothed(np.stack([levels[maps.mask(view, offset, size, _SAMPLES)] for offset in offsets]))
+    @property
+    def size(self) -> int:
+        """S."""
+        return int(self.silhouettes.shape[2])
 
 
-def places(view: maps.View, positions: Array, size: int, side: int, phase: float) -> Places:
-    """The caster rendered at side x side places in each of the four cells of the positions (3, 3, 2)."""
-    s, t = _fractions(side, phase).T
-    weights = np.stack([(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t], axis=1)
-    offsets = []
-    for j in range(2):
-        for i in range(2):
-            around = positions[j : j + 2, i : i + 2].reshape(4, 2)
-            offsets.append(sum(weights[:, k, None] * around[k] for k in range(4)))
-    targets = _rendered(view, np.concatenate(offsets), size)
-    return Places(np.arange(5) * len(s), np.tile(weights, (4, 1)), targets)
+class Candidate(NamedTuple):
+    """Points (3, 3, R, C, 2), and how they came about."""
+
+    name: str
+    points: Array
 
 
 class _Work:
     """One run: what is made once for each level, and the count of steps that are done."""
 
-    def __init__(
-        self, view: maps.View, positions: Array, silhouettes: Array, recipe: Recipe, progress: Progress | None
-    ) -> None:
-        self.view, self.positions, self.silhouettes, self.progress = view, positions, silhouettes, progress
-        self.done, self.total = 0, sum(level.steps for level in 2 * recipe.starts + recipe.finish)
+    def __init__(self, nine: Nine, recipe: Recipe, starts: int, progress: Progress | None) -> None:
+        self.nine, self.progress = nine, progress
+        self.done = 0
+        self.total = sum(level.steps for level in starts * recipe.starts + recipe.finish)
+        self.forms, self.finer = folds.forms_of(nine.pace.depths), _finer(nine.silhouettes)
         self.tasks: dict[Level, Task] = {}
 
-    def task(self, level: Level, phase: float = _TRAINING) -> Task:
+    def task(self, level: Level, phase: float = training.TRAINING) -> Task:
         """At the maps' own size the maps themselves are registered, with the steps in their outlines: .01 at worst."""
-        own = self.silhouettes.shape[2]
-        size = min(level.size, own)
+        nine, own = self.nine, self.nine.size
+        size = min(level.size * self.finer, own)
         if size == own:
-            images = _smoothed(self.silhouettes.reshape(9, own, own))
+            images = training.smoothed(nine.silhouettes.reshape(9, own, own))
         else:
-            images = _rendered(self.view, self.positions.reshape(9, 2), size)
-        return Task(images.reshape(9, -1), places(self.view, self.positions, size, level.side, phase))
+            images = training.rendered(nine.view, nine.positions.reshape(9, 2), size)
+        places = training.places(nine.view, nine.positions, nine.pace.depths, size, level.side, phase)
+        return Task(images.reshape(9, -1), places, self.forms)
 
     def run(self, points: Array, levels: tuple[Level, ...], what: str) -> Array:
         for level in levels:
@@ -131,32 +125,106 @@ class _Work:
         self.done += 1
 
 
-def place(
-    quality: str,
-    view: maps.View,
-    positions: Array,
-    silhouettes: Array,
-    grid: tuple[int, int],
-    progress: Progress | None,
-) -> Array:
-    """Controls (3, 3, R, C, 2) by one of `RECIPES`, on the lattice of the window.
+def _finer(silhouettes: Array) -> int:
+    """1, 2 or 4: so many times finer a small shadow is registered, to have as many texels as a large one."""
+    extents = [
+        np.ptp(np.flatnonzero(image.any(axis=axis))) + 1
+        for image in silhouettes.reshape(9, *silhouettes.shape[2:]) > 0.0
+        for axis in (0, 1)
+        if image.any()
+    ]
+    largest = max(extents) / silhouettes.shape[2]
+    return 1 if largest > _SMALL else 2 if largest > _SMALL / 2.0 else 4
 
-    view: what the maps are rendered of, at any size; positions (3, 3, 2) of the nine maps; silhouettes (3, 3, S, S):
-    theirs, 0 to 1, as sharp as the maps. The border stays on the border; no triangle folds, in the nine grids or at any
-    place between them. Where there is nothing to register (a map without a silhouette), or too much (more points than
-    _MOST_POINTS), the first of the simple placements is returned.
-    """
-    recipe, size, (rows, columns) = RECIPES[quality], silhouettes.shape[2], grid
-    starts = [bounds(silhouettes, rows, columns), turned(bounds(silhouettes, columns, rows))]
-    if rows * columns > _MOST_POINTS or not (silhouettes > 0.0).any(axis=(2, 3)).all():
-        return on_lattice(starts[0], size)
-    work = _Work(view, positions, silhouettes, recipe, progress)
-    names = ("control points, rows downwards", "control points, rows across")
-    placed = [work.run(start, recipe.starts, name) for start, name in zip(starts, names, strict=True)]
-    others = work.task(recipe.starts[-1], _OTHERS)
-    better = min(range(2), key=lambda i: residuals.cost(others.images, others.places, placed[i]))
+
+def _starts(nine: Nine, boxes: Array | None, rows: int, columns: int) -> list[Candidate]:
+    """What registration is started from."""
+    found = [
+        Candidate("rows downwards", bounds(nine.silhouettes, rows, columns, boxes)),
+        Candidate("rows across", turned(bounds(nine.silhouettes, columns, rows, boxes))),
+    ]
+    if boxes is not None and (boxes.min() < 0.0 or boxes.max() > 1.0):
+        found.append(Candidate("the caster's box, rows downwards", along(boxes, rows, columns)))
+        found.append(Candidate("the caster's box, rows across", turned(along(boxes, columns, rows))))
+    forms = folds.forms_of(nine.pace.depths)
+    return [candidate for candidate in found if folds.unfolded(candidate.points, forms)]
+
+
+def _finished(nine: Nine, recipe: Recipe, starts: Sequence[Candidate], progress: Progress | None) -> list[Candidate]:
+    """What registration comes to, the finished one first, and before it was finished."""
+    work = _Work(nine, recipe, len(starts), progress)
+    placed = [work.run(start.points, recipe.starts, f"control points, {start.name}") for start in starts]
+    others = work.task(recipe.starts[-1], training.OTHERS)
+    better = min(range(len(placed)), key=lambda i: residuals.cost(others.images, others.places, placed[i]))
     points = work.run(placed[better], recipe.finish, "control points")
     if progress:
         progress("control points", work.total, work.total)
-    points = on_lattice(points, size)
-    return points if unfolded(points) else on_lattice(starts[better], size)
+    coarse = [Candidate(f"registered, coarsely, {s.name}", p) for s, p in zip(starts, placed, strict=True)]
+    return [Candidate(f"registered, {starts[better].name}", points), *coarse]
+
+
+def snapped(points: Array, size: int, forms: Array = folds.EVEN) -> Array:
+    """Points on the lattice of the window; the corners of triangles that would fold by that stay where they are."""
+    moved, exact = on_lattice(points, size), np.zeros(points.shape[2:4], np.bool_)
+    number = np.arange(exact.size).reshape(exact.shape)
+    corners = grid_triangles(np.stack([number, number], axis=-1))[..., 0]
+    while (folding := folds.folding(moved, forms).any(axis=0)).any() and not exact.all():
+        before = int(exact.sum())
+        exact.reshape(-1)[corners[folding].astype(np.int64).ravel()] = True
+        if int(exact.sum()) == before:
+            break
+        moved[:, :, exact] = points[:, :, exact]
+    return moved
+
+
+class Placed(NamedTuple):
+    """What `place` gives."""
+
+    points: Array
+    """(3, 3, R, C, 2) on the lattice of the window."""
+    chosen: Reach
+    others: tuple[Reach, ...]
+
+
+def place(quality: str, nine: Nine, grid: tuple[int, int], progress: Progress | None) -> Placed:
+    """Controls by one of `RECIPES`, what they reach, and what others do.
+
+    The border stays on the border; no triangle folds, in the nine grids or at any place between them. Where there is
+    nothing to register (no map has a silhouette), or too much (more points than _MOST_POINTS), the simple placements
+    alone are compared.
+    """
+    boxes, forms = maps.projected_boxes(nine.view, nine.positions), folds.forms_of(nine.pace.depths)
+    simple = _simple(nine, boxes, *grid)
+    registered = _registered(quality, nine, boxes, grid, progress)
+    if quality == "best":
+        fast = place("fast", nine, grid, None)
+        simple.insert(0, Candidate(f"{fast.chosen.name} (fast)", fast.points))
+    candidates = [c._replace(points=snapped(c.points, nine.size, forms)) for c in (*registered, *simple)]
+    offsets = training.spread(nine.positions, RECIPES[quality].held_out)
+    held_out = HeldOut(nine.view, nine.positions, nine.size, nine.samples, nine.pace, offsets)
+    tried = [held_out.tried(*candidate) for candidate in candidates]
+    rivals = [*tried[-len(simple) :], held_out.nearest_map()]
+    best = best_of(tried, rivals, len(registered))
+    others = [t.reach for i, t in enumerate((*tried, rivals[-1])) if i != best]
+    return Placed(candidates[best].points, tried[best].reach, tuple(others))
+
+
+def _simple(nine: Nine, boxes: Array | None, rows: int, columns: int) -> list[Candidate]:
+    """What registration must be better than."""
+    return [
+        Candidate("bounds", bounds(nine.silhouettes, rows, columns, boxes)),
+        Candidate("identity", identity(nine.silhouettes, rows, columns)),
+    ]
+
+
+def _registered(
+    quality: str, nine: Nine, boxes: Array | None, grid: tuple[int, int], progress: Progress | None
+) -> list[Candidate]:
+    """What registration comes to, the finished one first; and the caster's own box."""
+    (rows, columns), found = grid, []
+    starts = _starts(nine, boxes, rows, columns)
+    if rows * columns <= _MOST_POINTS and starts and (nine.silhouettes > 0.0).any():
+        found = _finished(nine, RECIPES[quality], starts, progress)
+    if boxes is not None:
+        found.append(Candidate("the caster's box", along(boxes, rows, columns)))
+    return found

@@ -27,7 +27,8 @@ class Solid(NamedTuple):
 
 def solid(vertices: Array, triangles: NDArray[np.int32]) -> Solid:
     """A mesh to ask `touched` and `contains` about."""
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    corners = vertices[np.unique(triangles)]
+    low, high = corners.min(axis=0), corners.max(axis=0)
     slack = _TOUCHES * float((high - low).max())
     return Solid(vertices, triangles, low - slack, high + slack)
 

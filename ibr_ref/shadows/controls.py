@@ -20,6 +20,9 @@ Array = NDArray[np.float64]
 _LEAST_GAP = 1.0 / 64.0
 """Between the lines of a grid, as a share of the map."""
 
+_LEAST_PRESSED = 1.0 / 256.0
+"""The same of lines that are pressed to the border."""
+
 _PADDING = 1.0 / 64.0
 """Around the silhouette, so that its outline is not on the border of a cell."""
 
@@ -47,21 +50,53 @@ def on_lattice(controls: Array, size: int) -> Array:
     return np.rint(controls * steps) / steps
 
 
-def identity(images: Array, rows: int, columns: int) -> Array:
+def identity(images: Array, rows: int, columns: int, boxes: Array | None = None) -> Array:
     """(3, 3, R, C, 2) regular grids: the maps are mixed where they are."""
     return np.broadcast_to(regular(rows, columns), (3, 3, rows, columns, 2)).copy()
 
 
-def bounds(images: Array, rows: int, columns: int) -> Array:
+def bounds(images: Array, rows: int, columns: int, boxes: Array | None = None) -> Array:
     """(3, 3, R, C, 2) grids whose inner lines divide the silhouette's bounding box; their outer ones are the border.
 
-    Lines stay lines between the maps, so that nothing folds. Without a silhouette in each map, `identity`.
+    Lines stay lines between the maps, so that nothing folds. For a map without a silhouette its own one of `boxes`
+    (`projected_boxes`) is taken; where there is none, all grids are `identity`.
     """
-    boxes = [[_bounding_box(image) for image in line] for line in images]
-    if any(box is None for line in boxes for box in line):
+    found = [[_bounding_box(image) for image in line] for line in images]
+    if boxes is not None:
+        found = [[b or _as_box(boxes[j, i]) for i, b in enumerate(line)] for j, line in enumerate(found)]
+    if any(box is None for line in found for box in line):
         return identity(images, rows, columns)
-    grids = [[_crossing(_lines(*box[0], columns), _lines(*box[1], rows)) for box in line if box] for line in boxes]
+    grids = [[_crossing(_lines(*box[0], columns), _lines(*box[1], rows)) for box in line if box] for line in found]
     return np.array(grids)
+
+
+def _as_box(ends: Array) -> tuple[tuple[float, float], tuple[float, float]]:
+    (u0, u1), (v0, v1) = np.minimum(np.maximum(ends, 0.0), 1.0).tolist()
+    return (u0, u1), (v0, v1)
+
+
+def along(boxes: Array, rows: int, columns: int) -> Array:
+    """(3, 3, R, C, 2) grids whose inner lines divide the caster's own box in each map, wherever it reaches to.
+
+    boxes (3, 3, 2, 2): [u or v][low, high] of `projected_boxes`. Lines beyond the map's border are pressed to it, so that
+    the others mark the same of the caster in all maps.
+    """
+    grids = [[_crossing(_pressed(u, columns), _pressed(v, rows)) for u, v in line] for line in boxes]
+    return np.array(grids)
+
+
+def _pressed(ends: Array, count: int) -> Array:
+    """`count` coordinates from 0 to 1, the inner ones evenly from one end to the other where inside."""
+    low, high = ends.tolist()
+    inner = count - 2
+    if inner < 2:
+        return _lines(min(max(low, 0.0), 1.0), min(max(high, 0.0), 1.0), count)
+    gap = min(_LEAST_PRESSED, 1.0 / (2 * count))
+    lines, last = [0.0], 0.0
+    for i, line in enumerate(np.linspace(low - _PADDING, high + _PADDING, inner).tolist()):
+        last = min(max(line, last + gap), 1.0 - gap * (inner - i))
+        lines.append(last)
+    return np.array([*lines, 1.0])
 
 
 def _bounding_box(image: Array) -> tuple[tuple[float, float], tuple[float, float]] | None:
@@ -90,13 +125,13 @@ def turned(controls: Array) -> Array:
     return np.ascontiguousarray(controls[:, :, ::-1].swapaxes(2, 3))
 
 
-PLACEMENTS: dict[str, Callable[[Array, int, int], Array]] = {"bounds": bounds, "identity": identity}
+PLACEMENTS: dict[str, Callable[[Array, int, int, Array | None], Array]] = {"bounds": bounds, "identity": identity}
 """The automatic placements, by name: (3, 3, S, S) silhouettes, R and C to (3, 3, R, C, 2) controls."""
 
 
-def place(name: str, images: Array, rows: int, columns: int) -> Array:
+def place(name: str, images: Array, rows: int, columns: int, boxes: Array | None = None) -> Array:
     """Controls (3, 3, R, C, 2) by one of `PLACEMENTS`, on the lattice of the window.
 
-    images (3, 3, S, S): silhouettes, 0 where empty and above it elsewhere.
+    images (3, 3, S, S): silhouettes, 0 where empty and above it elsewhere. boxes as in `bounds`.
     """
-    return on_lattice(PLACEMENTS[name](images, rows, columns), images.shape[2])
+    return on_lattice(PLACEMENTS[name](images, rows, columns, boxes), images.shape[2])

@@ -4,6 +4,9 @@ In a cell of the 3 x 3 positions a corner moves bilinearly between its four grid
 polynomial of degree (2, 2) in the fractions s and t. Its nine Bernstein coefficients are mixed areas
 cross(e_k, f_l) of the triangle's edges e and f in the maps k and l; where all are positive, so is the area, at every
 place. As sums of products of coordinates they have simple derivatives, and keep away from zero by a logarithmic barrier.
+
+At the projective pace maps are mixed by their bilinear weights times the caster's depths w, over the sum of these. Times
+the square of that sum, which is positive, the area is such a polynomial too: with w_k w_l in front of the mixed areas.
 """
 
 from __future__ import annotations
@@ -29,6 +32,18 @@ def _forms() -> Array:
 
 
 _FORMS = _forms()
+
+EVEN = _FORMS[None].copy()
+"""(1, 9, 4, 4) the forms at the even pace, of all cells of the positions."""
+
+
+def forms_of(depths: Array | None) -> Array:
+    """(4, 9, 4, 4) the forms of each cell, for the caster's depths (3, 3) in the nine maps; None: `EVEN`."""
+    if depths is None:
+        return EVEN
+    cells = np.stack([depths[j : j + 2, i : i + 2].reshape(4) for j in range(2) for i in range(2)])
+    shares = cells / cells.mean(axis=1)[:, None]
+    return np.ascontiguousarray(_FORMS * (shares[:, None, :, None] * shares[:, None, None, :]))
 
 
 @device
@@ -72,8 +87,9 @@ def _coefficients_of(forms, corners, out):
 
 @kernel
 def _all_coefficients(forms, corners, out):
+    count = len(out) // len(forms)
     for e in prange(len(out)):
-        _coefficients_of(forms, corners[e], out[e])
+        _coefficients_of(forms[e // count], corners[e], out[e])
 
 
 @device
@@ -90,14 +106,18 @@ def _push(forms, corners, least, strength, matrix, gradient):
 
 @kernel
 def _push_all(forms, corners, least, strength, matrix, gradient):
+    count = len(corners) // len(forms)
     for e in prange(len(corners)):
-        _push(forms, corners[e], least, strength, matrix[e], gradient[e])
+        _push(forms[e // count], corners[e], least, strength, matrix[e], gradient[e])
 
 
-def coefficients(corners: Array) -> Array:
-    """(E, 9) Bernstein coefficients of twice the area, for corners (E, 4, 3, 2) in the maps 00, 10, 01, 11."""
+def coefficients(corners: Array, forms: Array = EVEN) -> Array:
+    """(E, 9) Bernstein coefficients of twice the area, for corners (E, 4, 3, 2) in the maps 00, 10, 01, 11 of a cell.
+
+    forms (F, 9, 4, 4): those of `forms_of`, of E / F triangles in a row each.
+    """
     out = np.empty((len(corners), 9))
-    _all_coefficients(_FORMS, corners, out)
+    _all_coefficients(forms, corners, out)
     return out
 
 
@@ -108,19 +128,27 @@ def four_grids(controls: NDArray[Any]) -> NDArray[Any]:
     return np.stack([np.stack([triangles[j + k // 2][i + k % 2] for k in range(4)], axis=1) for j, i in cells])
 
 
-def unfolded(controls: Array) -> bool:
+def folding(controls: Array, forms: Array = EVEN) -> NDArray[np.bool_]:
+    """(4, T) which triangles of controls (3, 3, R, C, 2) may fold somewhere in a cell: all that do, and few others."""
+    found = coefficients(four_grids(controls).reshape(-1, 4, 3, 2), forms)
+    return np.asarray(~(found > 0.0).all(axis=1), np.bool_).reshape(4, -1)
+
+
+def unfolded(controls: Array, forms: Array = EVEN) -> bool:
     """Whether no triangle of controls (3, 3, R, C, 2) folds, at any place: sufficient, not necessary."""
-    return bool((coefficients(four_grids(controls).reshape(-1, 4, 3, 2)) > 0.0).all())
+    return not folding(controls, forms).any()
 
 
-def barrier(corners: Array, least: float, strength: float) -> float:
+def barrier(corners: Array, least: float, strength: float, forms: Array = EVEN) -> float:
     """- strength sum log(coefficient - least); infinity where one is not above `least`."""
-    room = coefficients(corners) - least
+    room = coefficients(corners, forms) - least
     if not (room > 0.0).all():
         return np.inf
     return -strength * float(sum(np.log(room).ravel().tolist()))
 
 
-def add_barrier(corners: Array, least: float, strength: float, matrix: Array, gradient: Array) -> None:
+def add_barrier(
+    corners: Array, least: float, strength: float, matrix: Array, gradient: Array, forms: Array = EVEN
+) -> None:
     """Add the barrier's slope, and the part of its curvature that is never negative, to equations by element."""
-    _push_all(_FORMS, corners, least, strength, matrix, gradient)
+    _push_all(forms, corners, least, strength, matrix, gradient)

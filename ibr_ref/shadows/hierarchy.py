@@ -41,7 +41,8 @@ def build(vertices: Array, triangles: NDArray[np.int32]) -> Hierarchy:
     levels = max(0, (len(corners) // 2).bit_length() - 1)
     order, starts = _sorted(corners.mean(axis=1), levels)
     corners = np.ascontiguousarray(corners[order])
-    slack = _SLACK * float((vertices.max(axis=0) - vertices.min(axis=0)).max())
+    extent = corners.max(axis=(0, 1)) - corners.min(axis=(0, 1))
+    slack = _SLACK * float(extent.max())
     low = [np.minimum.reduceat(corners.min(axis=1), starts[:-1]) - slack]
     high = [np.maximum.reduceat(corners.max(axis=1), starts[:-1]) + slack]
     for _ in range(levels):

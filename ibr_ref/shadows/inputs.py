@@ -14,9 +14,15 @@ from ibr_ref.shadows.maps import MOST_SAMPLES
 
 CONTENTS = ("mask", "depth")
 POLICIES = ("dissolve", "nearest")
+INTERPOLATIONS = ("linear", "projective")
 ACCUMULATIONS = ("float", "unorm8")
 METHODS = ("warp", "direct", "grid")
 STORAGES = ("raw", "haar")
+READ_BY: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("rows", "columns", "policy", "interpolation"), ("warp",)),
+    **dict.fromkeys(("grid_size", "grid_mix", "grid_storage"), ("grid",)),
+}
+"""Fields of `Params` that only some methods read, and these."""
 SAMPLE_COUNTS = (1, 5, 9)
 
 MOST_LIGHT_SAMPLES = 1024
@@ -156,6 +162,9 @@ class Params:
     """Of depths, in units of window depth, >= 0."""
     policy: str = "dissolve"
     """`"dissolve"`: both neighbours are warped and mixed; "nearest": the nearer one is warped."""
+    interpolation: str = "linear"
+    """Pace of the control points between two maps: `"linear"`, even, the paper's; "projective": that of the caster's centre
+    as the light sees it (`shadows.pace`)."""
     light_samples: int | ArrayLike = 1
     """1: the centre; 5 or 9: with points of the rectangle around it; or (N, 3) world positions in its plane."""
     accumulation: str = "float"
@@ -185,6 +194,7 @@ class Params:
         words = {
             "content": CONTENTS,
             "policy": POLICIES,
+            "interpolation": INTERPOLATIONS,
             "accumulation": ACCUMULATIONS,
             "method": METHODS,
             "grid_storage": STORAGES,

@@ -96,3 +96,18 @@ def mask(view: View, offset: Array, size: int, k: int) -> NDArray[np.uint8]:
 def depth(view: View, offset: Array, size: int) -> Array:
     """(S, S) window depth of the caster; 1 where it is not."""
     return visible(_triangles(view, offset, size), size, size).depth
+
+
+def projected_boxes(view: View, positions: Array) -> Array | None:
+    """(3, 3, 2, 2) [u or v][low, high] of the caster's vertices in the nine maps, within them or not.
+
+    None where a vertex is not in front of the light at one of the positions (3, 3, 2).
+    """
+    boxes = []
+    for offset in positions.reshape(-1, 2):
+        clip = to_clip(place(view.vertices, view.axes, offset), view.view_from_world, view.clip_from_view)
+        if not (clip[:, 3] > 0.0).all():
+            return None
+        u, v = 0.5 + 0.5 * clip[:, 0] / clip[:, 3], 0.5 - 0.5 * clip[:, 1] / clip[:, 3]
+        boxes.append([(u.min(), u.max()), (v.min(), v.max())])
+    return np.array(boxes).reshape(3, 3, 2, 2)

@@ -50,7 +50,7 @@ def distances(frame: Frame, points: Array) -> Array:
 
 
 def window_around(frame: Frame, vertices: Array, farthest: float) -> Window:
-    """The window around a caster (V, 3) in front of the light, and around its penumbra as far as `farthest`."""
+    """The window around a caster's corners (U, 3) in front of the light, and around its penumbra as far as `farthest`."""
     seen = transformed(frame.view_from_world, vertices)
     h = -seen[:, 2]
     places = seen[:, :2] / h[:, None]

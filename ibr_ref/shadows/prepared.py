@@ -14,16 +14,24 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.io.files import atomic, contents, naming
+from ibr_ref.io.files import contents, naming
+from ibr_ref.io.outputs import atomic
+from ibr_ref.pipeline.transform import transformed
 from ibr_ref.scene import Mesh, checks
 from ibr_ref.shadows import automatic, maps
 from ibr_ref.shadows import controls as placement
 from ibr_ref.shadows.inputs import CONTENTS, LARGEST_MAP, MOST_CONTROLS, Params, Scene
+from ibr_ref.shadows.placement import Placement
 from ibr_ref.shadows.samples import check_outside, samples_of, widened_range
+from ibr_ref.shadows.selection import Pace
 from ibr_ref.shadows.spans import spans
+from ibr_ref.shadows.vertex import place
 from ibr_ref.shadows.warp import Nine
 
 Array = NDArray[np.float64]
+
+GIVEN = "given"
+"""The placement of control points that were handed in, or of which a file does not say it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -45,6 +53,10 @@ class Maps:
     """k: a mask's texel is its count over k^2."""
     source: str
     """Digest of caster, axes and light, to tell maps of another scene."""
+    placement: str = GIVEN
+    """How the control points were placed: the name that `prepare` was given, or "given" for points by hand."""
+    choice: Placement | None = None
+    """How automatic control points were chosen, and what they are expected to reach; None: others were given."""
 
     def __post_init__(self) -> None:
         checks.choice("content", self.content, CONTENTS)
@@ -71,6 +83,18 @@ class Maps:
     def size(self) -> int:
         """S."""
         return int(self.texels.shape[3])
+
+    @property
+    def made_with(self) -> dict[str, object]:
+        """The fields of `Params` that the maps were made with; others do not fit them."""
+        rows, columns = self.controls.shape[2:4]
+        return {
+            "map_size": self.size,
+            "content": self.content,
+            "map_samples": self.samples,
+            "rows": rows,
+            "columns": columns,
+        }
 
     @property
     def lines(self) -> tuple[list[float], list[float]]:
@@ -100,6 +124,7 @@ class Maps:
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write a NumPy archive (.npz, no pickles)."""
+        chosen: Any = {} if self.choice is None else {"choice": np.array(self.choice.text)}
         with atomic(path) as file:
             np.savez_compressed(
                 file,
@@ -109,6 +134,8 @@ class Maps:
                 content=np.array(self.content),
                 samples=np.array(self.samples),
                 source=np.array(self.source),
+                placement=np.array(self.placement),
+                **chosen,
             )
 
     @classmethod
@@ -119,6 +146,8 @@ class Maps:
             _check_archive(data)
             with np.load(BytesIO(data), allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in _FIELDS}
+                placement = str(archive["placement"]) if "placement" in archive else GIVEN
+                choice = str(archive["choice"]) if "choice" in archive else None
             for name in ("positions", "controls"):
                 arrays[name] = checks.numbers(name, arrays[name], "numbers")
             return cls(
@@ -128,6 +157,8 @@ class Maps:
                 content=str(arrays["content"]),
                 samples=checks.whole("samples", arrays["samples"], low=1, high=maps.MOST_SAMPLES),
                 source=str(arrays["source"]),
+                placement=placement,
+                choice=None if choice is None else Placement.read(choice),
             )
 
 
@@ -184,6 +215,23 @@ def view_of(scene: Scene, size: int, position: Array | None = None) -> maps.View
     )
 
 
+def depths_of(scene: Scene, params: Params, positions: Array) -> Array | None:
+    """(3, 3) depth of the middle of the caster's box along the light's view axis, for the nine maps; None: even pace.
+
+    Raises ValueError where it is not in front of the light.
+    """
+    if params.interpolation == "linear":
+        return None
+    middle, view = scene.caster.bounds.mean(axis=0), scene.light.camera(1).view_from_world
+    places = np.stack([place(middle, scene.axes, offset) for offset in positions.reshape(-1, 2)])
+    depths: Array = -transformed(view, places)[:, 2].reshape(3, 3)
+    if not (depths > 0.0).all():
+        behind = positions.reshape(-1, 2)[int(depths.argmin())].tolist()
+        found = f"projective with the caster at offset {tuple(behind)} not in front of the light"
+        raise checks.reject("interpolation", found, "linear, or a light that sees the caster's middle everywhere")
+    return depths
+
+
 _hashed: WeakKeyDictionary[Mesh, Any] = WeakKeyDictionary()
 """Casters' digests, to go on from: a frame must not cost more for a larger caster. Meshes do not change."""
 
@@ -221,6 +269,7 @@ def prepare(
     automatic placements (`shadows.automatic`); "bounds" or "identity", simple ones (`shadows.controls`); or points
     (3, 3, R, C, 2) in [0, 1]^2, as given. progress(what, done, total) is called as placement goes on. Raises ValueError
     for a light that is inside the caster at one of the nine places, and for controls of another shape, or folded.
+    `Maps.choice` says what automatic controls were chosen, and what they are expected to reach.
     """
     params = Params() if params is None else params
     low, high = widened_range(scene, samples_of(scene, params))
@@ -228,17 +277,13 @@ def prepare(
     positions = maps.positions(low, high, np.array(scene.on_axes(centre)))
     for offset in positions.reshape(-1, 2):
         check_outside("light.position", scene, offset, centre)
-    points = _points(controls, params)
+    points, chosen = _points(controls, params), None
     view = view_of(scene, params.map_size)
     texels = np.stack([np.stack([texels_at(view, offset, params) for offset in line]) for line in positions])
     if isinstance(points, str):
         images = maps.values(texels, params.map_samples)
         silhouettes = images if params.content == "mask" else (images < 1.0).astype(np.float64)
-        size = (params.rows, params.columns)
-        if points in placement.PLACEMENTS:
-            points = placement.place(points, silhouettes, *size)
-        else:
-            points = automatic.place(points, view, positions, silhouettes, size, progress)
+        points, chosen = _placed(points, scene, params, view, positions, silhouettes, progress)
     return Maps(
         positions=positions,
         texels=texels,
@@ -246,6 +291,34 @@ def prepare(
         content=params.content,
         samples=params.map_samples,
         source=source_of(scene),
+        placement=controls if isinstance(controls, str) else GIVEN,
+        choice=chosen,
+    )
+
+
+def _placed(
+    name: str,
+    scene: Scene,
+    params: Params,
+    view: maps.View,
+    positions: Array,
+    silhouettes: Array,
+    progress: automatic.Progress | None,
+) -> tuple[Array, Placement | None]:
+    """Control points by a placement's name, and what became of it."""
+    size = (params.rows, params.columns)
+    if name in placement.PLACEMENTS:
+        return placement.place(name, silhouettes, *size, maps.projected_boxes(view, positions)), None
+    pace = Pace(depths_of(scene, params, positions), params.policy == "nearest")
+    samples = params.map_samples if params.content == "mask" else 1
+    nine = automatic.Nine(view, positions, silhouettes, samples, pace)
+    placed = automatic.place(name, nine, size, progress)
+    return placed.points, Placement(
+        asked=name,
+        interpolation=params.interpolation,
+        places=automatic.RECIPES[name].held_out,
+        chosen=placed.chosen,
+        others=placed.others,
     )
 
 

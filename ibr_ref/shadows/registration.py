@@ -46,6 +46,8 @@ class Task(NamedTuple):
     """(9, S S) the nine maps."""
     places: Places
     """Training places, and what was rendered there."""
+    forms: Array = folds.EVEN
+    """Of the triangles' areas, by the pace between the maps (`folds.forms_of`)."""
 
 
 class _Slope(NamedTuple):
@@ -84,20 +86,21 @@ class _Registration:
     def __init__(self, controls: Array, task: Task) -> None:
         self.task = task
         self.members, self.free, self.stiffness = _members(controls.shape), _free(controls), _stiffness()
-        self.least = min(_LEAST_AREA, folds.coefficients(self.corners(controls)).min() / 4.0)
+        self.least = min(_LEAST_AREA, folds.coefficients(self.corners(controls), task.forms).min() / 4.0)
 
     def corners(self, controls: Array) -> Array:
         return four_grids(controls).reshape(-1, 4, 3, 2)
 
     def objective(self, controls: Array) -> float:
-        fence = folds.barrier(self.corners(controls), self.least, _BARRIER)
+        fence = folds.barrier(self.corners(controls), self.least, _BARRIER, self.task.forms)
         if fence == np.inf:
             return fence
         return fence + residuals.cost(self.task.images, self.task.places, controls) / 2.0
 
     def slope(self, controls: Array) -> _Slope:
         sums = residuals.equations(self.task.images, self.task.places, controls)
-        folds.add_barrier(self.corners(controls), self.least, _BARRIER, sums.matrix, sums.gradient)
+        corners, forms = self.corners(controls), self.task.forms
+        folds.add_barrier(corners, self.least, _BARRIER, sums.matrix, sums.gradient, forms)
         diagonals = np.ascontiguousarray(np.diagonal(sums.matrix, axis1=1, axis2=2))
         gradient = solver.scatter(sums.gradient, self.members, controls.size)
         return _Slope(sums.matrix, gradient, solver.scatter(diagonals, self.members, controls.size))

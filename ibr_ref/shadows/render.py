@@ -14,13 +14,13 @@ from ibr_ref.shadows import grid
 from ibr_ref.shadows.grid import MapGrid
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.maps import values
-from ibr_ref.shadows.prepared import Maps, check_unfolded, prepare, source_of, texels_at, view_of
+from ibr_ref.shadows.prepared import Maps, check_unfolded, depths_of, prepare, source_of, texels_at, view_of
 from ibr_ref.shadows.project import DEPTH, DEPTH_PCF, MASK, Lookup, Projected, project
 from ibr_ref.shadows.resolve import accumulate, resolve
 from ibr_ref.shadows.samples import Sample, samples_of, seen_offset
 from ibr_ref.shadows.surface import Object, Surface, see
 from ibr_ref.shadows.vertex import place
-from ibr_ref.shadows.warp import Warped, grids_at, locate, warp_stage
+from ibr_ref.shadows.warp import Warped, grids_at, locate, shares_at, warp_stage
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ def render(
     """Draw receivers and caster with the caster's shadow.
 
     maps: what `prepare` made for this scene's caster, axes and light, for any offset (for method="grid" `prepare_grid`);
-    None: made here, at every call. With `stages` the frame holds every intermediate array (`shadows.__doc__` lists
+    None: made here, at every call. With `stages` the frame holds every intermediate array (`contract.STAGES` lists
     them); without, the same picture and depth sooner. Raises ValueError for inputs that only together are not allowed,
     and for maps that do not fit the scene and the parameters.
     """
@@ -88,19 +88,19 @@ def _direct(scene: Scene, params: Params, sample: Sample) -> Array:
     return values(texels_at(view, np.asarray(scene.offset), params), params.map_samples)
 
 
+def check_maps(scene: Scene, params: Params, maps: object) -> None:
+    """Raise ValueError for what are no maps of the scene and the parameters, with method="warp"."""
+    if not isinstance(maps, Maps):
+        raise checks.reject("maps", type(maps).__name__, "Maps")
+    _nine(scene, params, samples_of(scene, params), maps)
+
+
 def _nine(scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None) -> Maps:
     if maps is None:
         return prepare(scene, params)
     if not isinstance(maps, Maps):
         raise checks.reject("maps", type(maps).__name__, 'Maps, or None, with method="warp"')
-    given = {
-        "map_size": maps.size,
-        "content": maps.content,
-        "map_samples": maps.samples,
-        "rows": maps.controls.shape[2],
-        "columns": maps.controls.shape[3],
-    }
-    _check_made_for(scene, params, given, maps.source)
+    _check_made_for(scene, params, maps.made_with, maps.source)
     x, y = maps.lines
     _check_range(scene, samples, np.array([(x[0], y[0]), (x[2], y[2])]))
     return maps
@@ -130,20 +130,22 @@ def _warped(
     scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps, stages: bool
 ) -> tuple[list[Array], dict[str, Any]]:
     warps = []
+    depths, nearest = depths_of(scene, params, maps.positions), params.policy == "nearest"
     for i, sample in enumerate(samples):
         cell, fraction = locate(maps.positions, seen_offset(scene, sample))
-        _check_grids(maps.controls, cell, fraction, i)
-        nearest = params.policy == "nearest"
-        warps.append(warp_stage(maps.nine, cell, fraction, nearest))
+        _check_grids(maps.controls, cell, shares_at(cell, fraction, depths), i)
+        warps.append(warp_stage(maps.nine, cell, fraction, depths, nearest))
     images = [w.image for w in warps]
     if not stages:
         return images, {}
     made = {"maps.positions": maps.positions, "maps.image": maps.image, "controls": maps.controls}
-    return images, {**made, **_grouped("warp", Warped._fields, warps)}
+    if depths is None:
+        return images, {**made, **_grouped("warp", [name for name in Warped._fields if name != "shares"], warps)}
+    return images, {**made, "maps.depths": depths, **_grouped("warp", Warped._fields, warps)}
 
 
-def _check_grids(controls: Array, cell: NDArray[np.int32], fraction: Array, sample: int) -> None:
-    row_grids, between = grids_at(controls, cell, fraction)
+def _check_grids(controls: Array, cell: NDArray[np.int32], three: Array, sample: int) -> None:
+    row_grids, between = grids_at(controls, cell, three)
     for name, points in (("row_grids[0]", row_grids[0]), ("row_grids[1]", row_grids[1]), ("grid", between)):
         check_unfolded(f"controls (warp.{name} of light sample {sample})", points)
 

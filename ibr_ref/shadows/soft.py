@@ -37,6 +37,13 @@ from ibr_ref.shadows.vertex import place
 Array = NDArray[np.float64]
 
 SOFT_METHODS = ("traced", "convolution", "pcss")
+READ_BY: dict[str, tuple[str, ...]] = {
+    "rays": ("traced",),
+    "map_size": ("convolution", "pcss"),
+    **dict.fromkeys(("map_samples", "receiver_planes"), ("convolution",)),
+    **dict.fromkeys(("search_points", "filter_points", "bias"), ("pcss",)),
+}
+"""Fields of `SoftParams` that only some methods read, and these."""
 MOST_RAYS = 65536
 MOST_POINTS = 4096
 """Of either of the percentage-closer filter's regions."""
@@ -140,8 +147,9 @@ def frame_of(scene: Scene, towards: Array) -> parallel.Frame:
 
 def _parallel(scene: Scene, surface: Surface, caster: Array) -> tuple[parallel.Frame, parallel.Window, Array]:
     """The light's frame, a window around the caster, and the distances of all that is seen of the receivers."""
-    frame = frame_of(scene, caster.mean(axis=0))
-    nearest = parallel.distances(frame, caster).min()
+    drawn = caster[np.unique(scene.caster.triangles)]
+    frame = frame_of(scene, drawn.mean(axis=0))
+    nearest = parallel.distances(frame, drawn).min()
     if not nearest > 0.0:
         raise checks.reject(
             "light.position",
@@ -151,4 +159,4 @@ def _parallel(scene: Scene, surface: Surface, caster: Array) -> tuple[parallel.F
     seen = (surface.triangle >= 0) & (surface.triangle < caster_from(scene))
     receivers = parallel.distances(frame, surface.varyings[seen][:, :3])
     farthest = float(receivers.max()) if len(receivers) else 0.0
-    return frame, parallel.window_around(frame, caster, max(farthest, float(nearest))), receivers
+    return frame, parallel.window_around(frame, drawn, max(farthest, float(nearest))), receivers

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.pipeline import memory
 from ibr_ref.shadows.draw import Image, draw
+from ibr_ref.shadows.pace import cell_of, shares
 
 Array = NDArray[np.float64]
 
@@ -38,12 +39,14 @@ class Warped(NamedTuple):
     """(2,) cell of the 3 x 3 positions, x first."""
     fraction: Array
     """(2,) s and t, the place within the cell."""
+    shares: Array
+    """(3,) of the next map in the upper row and in the lower one, of the lower row: s, s, t, or the projective ones."""
     row_grids: Array
-    """(2, R, C, 2) lerp(G00, G10, s) and lerp(G01, G11, s)."""
+    """(2, R, C, 2) lerps of G00 and G10, and of G01 and G11, by the first two shares."""
     rows: Array
     """(2, S, S) top and bottom."""
     grid: Array
-    """(R, C, 2) lerp of the row grids by t."""
+    """(R, C, 2) lerp of the row grids by the third share."""
     image: Array
     """(S, S)."""
 
@@ -61,30 +64,36 @@ def between(first: Array, second: Array, share: float) -> Array:
     return first * (1.0 - share) + second * share
 
 
-def grids_at(controls: Array, cell: NDArray[np.int32], fraction: Array) -> tuple[Array, Array]:
-    """The row grids (2, R, C, 2) and the grid (R, C, 2) of a place, from the controls (3, 3, R, C, 2)."""
-    (i, j), (s, t) = cell.tolist(), fraction.tolist()
-    rows = np.stack([between(controls[j + k, i], controls[j + k, i + 1], s) for k in range(2)])
+def shares_at(cell: NDArray[np.int32], fraction: Array, depths: Array | None) -> Array:
+    """The three shares of a place (`pace.shares`). depths (3, 3): the caster's in the nine maps; None: the even pace."""
+    return shares(fraction, None if depths is None else cell_of(depths, *cell.tolist()))
+
+
+def grids_at(controls: Array, cell: NDArray[np.int32], three: Array) -> tuple[Array, Array]:
+    """The row grids (2, R, C, 2) and the grid (R, C, 2) of a place with these shares, from the controls (3, 3, R, C, 2)."""
+    (i, j), (upper, lower, t) = cell.tolist(), three.tolist()
+    rows = np.stack([between(controls[j + k, i], controls[j + k, i + 1], s) for k, s in enumerate((upper, lower))])
     return rows, between(rows[0], rows[1], t)
 
 
-def warp_stage(nine: Nine, cell: NDArray[np.int32], fraction: Array, nearest: bool) -> Warped:
-    """The map for a place within a cell.
+def warp_stage(nine: Nine, cell: NDArray[np.int32], fraction: Array, depths: Array | None, nearest: bool) -> Warped:
+    """The map for a place within a cell. depths as in `shares_at`.
 
     nearest: each of the three warps takes the nearer image alone (section 3.2.2 speaks of three warps, as in bilinear
     interpolation); otherwise each mixes two, warped to one grid: six warps.
     """
     size = nine.texels.shape[2]
-    (i, j), (s, t) = cell.tolist(), fraction.tolist()
-    row_grids, grid = grids_at(nine.controls, cell, fraction)
+    (i, j), three = cell.tolist(), shares_at(cell, fraction, depths)
+    row_grids, grid = grids_at(nine.controls, cell, three)
+    s, t = three[:2].tolist(), float(three[2])
     rows, image = memory.arrays([(np.float64, (2, size, size)), (np.float64, (size, size))])
     pair = []
     for k in range(2):
         first, second = nine.image(j + k, i), nine.image(j + k, i + 1)
-        drawn = _warp_pair(first, second, s, row_grids[k], nearest, nine.outside, rows[k])
+        drawn = _warp_pair(first, second, s[k], row_grids[k], nearest, nine.outside, rows[k])
         pair.append(Image(rows[k].reshape(-1), None, drawn, row_grids[k]))
     _warp_pair(pair[0], pair[1], t, grid, nearest, nine.outside, image)
-    return Warped(cell, fraction, row_grids, rows, grid, image)
+    return Warped(cell, fraction, three, row_grids, rows, grid, image)
 
 
 def _warp_pair(

@@ -13,6 +13,12 @@ from ibr_ref.scene import Camera, DepthImage, Light, checks
 SHAPES = ("square", "disc", "ellipse")
 METHODS = ("shader", "software")
 
+READ_BY: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("alpha", "beta", "gamma", "delta", "min_width"), ("square", "disc")),
+    **dict.fromkeys(("footprint", "low_pass", "cutoff", "depth_tolerance"), ("ellipse",)),
+}
+"""Fields of `Params` that only some shapes read, and these."""
+
 MOST_POINTS = 2**31 - 1
 """Points of a scene: their indices are 32-bit integers."""
 

@@ -53,7 +53,7 @@ class Drawn(NamedTuple):
 def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -> Frame:
     """Draw reference images with depth as splats.
 
-    With `stages` the frame holds every intermediate array (`splatting.__doc__` lists them); without, the same picture
+    With `stages` the frame holds every intermediate array (`contract.STAGES` lists them); without, the same picture
     and depth sooner, and in memory that does not grow with the number of points. Raises ValueError for an atlas that does
     not fit, and for a law whose denominator is not positive for a point in view.
     """

@@ -227,7 +227,7 @@ def test_an_error_in_a_pipe_is_one_line_too(tmp_path: Path) -> None:
 
 
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ibr_ref.cli.bench import displacement
+    from ibr_ref.bench import displacement
 
     scenes = displacement._scenes()
     monkeypatch.setattr(displacement, "_scenes", lambda: scenes[:1])

@@ -9,8 +9,8 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from ibr_ref.cli import shadow_quality
-from ibr_ref.cli.bench import shadows as bench
+from ibr_ref import metrics
+from ibr_ref.bench import shadows as bench
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
 
@@ -18,8 +18,10 @@ REAL = Path(__file__).parents[2].parent / "shared" / "data" / "models"
 
 
 def of_cube(cube: Path, out: Path, *more: object) -> tuple[object, ...]:
-    small = ("--map-size", 64, "--rows", 5, "--columns", 4, "--size", "96x72")
-    return ("render", "shadows", "--caster", cube, *small, "--out", out, *more)
+    method = more[more.index("--method") + 1] if "--method" in more else "warp"
+    small = ("--size", "96x72") if method == "traced" else ("--map-size", 64, "--size", "96x72")
+    grids = ("--rows", 5, "--columns", 4) if method == "warp" else ()
+    return ("render", "shadows", "--caster", cube, *small, *grids, "--out", out, *more)
 
 
 @pytest.mark.parametrize("method", ["warp", "direct"])
@@ -43,14 +45,51 @@ def test_prepared_maps_are_written_once_and_read_again(run: Run, cube: Path, tmp
     assert run(*of_cube(cube, out, "--maps", maps)) == (0, "", "")
     assert maps.read_bytes() == before
     assert out.read_bytes() == first
-    assert_one_line(run(*of_cube(cube, out, "--maps", maps, "--rows", 6)), "rows", "5", "6")
+    for option, value, words in (
+        ("--rows", 6, ("--rows", "5", "6")),
+        ("--columns", 5, ("--columns", "4", "5")),
+        ("--map-size", 128, ("--map-size", "64", "128")),
+        ("--map-samples", 2, ("--map-samples", "1", "2")),
+        ("--content", "depth", ("--content", "mask", "depth")),
+        ("--controls", "best", ("--controls", "fast", "best")),
+    ):
+        assert_one_line(run(*of_cube(cube, out, "--maps", maps, option, value)), *words, "maps.npz")
+    assert run(*of_cube(cube, out, "--maps", maps, "--controls", "fast")) == (0, "", "")
+    plain = ("render", "shadows", "--caster", cube, "--size", "96x72", "--out", out, "--maps", maps)
+    assert run(*plain) == (0, "", ""), "what is not given is the file's"
+    assert out.read_bytes() == first
 
 
 def test_the_report(run: Run, cube: Path, tmp_path: Path) -> None:
     code, out, err = run(*of_cube(cube, tmp_path / "out.png", "--report"))
     assert (code, err) == (0, "")
-    for word in ("bytes", "IoU", "mean difference"):
+    for word in ("bytes", "IoU", "mean difference", "control points: ", "at 32 other places", "not taken: ", "bounds"):
         assert word in out
+    code, out, err = run(*of_cube(cube, tmp_path / "out.png", "--report", "--controls", "bounds"))
+    assert (code, err) == (0, "")
+    assert "not compared" in out
+
+
+def test_the_projective_pace(run: Run, cube: Path, tmp_path: Path) -> None:
+    out, stages, maps = tmp_path / "out.png", tmp_path / "dump.npz", tmp_path / "maps.npz"
+    more = ("--maps", maps, "--interpolation", "projective", "--offset", "0.3,-0.2")
+    assert run(*of_cube(cube, out, *more, "--stages", stages)) == (0, "", "")
+    with np.load(stages, allow_pickle=False) as dump:
+        assert dump["warp.shares"].shape == (3,)
+        assert dump["maps.depths"].shape == (3, 3)
+    code, said, err = run(*of_cube(cube, out, "--maps", maps, "--report"))
+    assert (code, err) == (0, "")
+    assert "chosen for interpolation projective, not linear" in said
+
+
+def test_that_no_good_control_points_were_found_is_said(run: Run, tmp_path: Path) -> None:
+    """A bar so thin that hardly a texel's centre is in its shadow."""
+    path = tmp_path / "bar.obj"
+    path.write_text("v 0 0 0\nv 5 0 3\nv 5 .02 3.02\nv 0 .02 .02\nf 1 2 3\nf 1 3 4\n")
+    code, out, err = run(*of_cube(path, tmp_path / "out.png", "--map-size", 32))
+    assert (code, out) == (0, "")
+    assert err.startswith("no good control points were found: ")
+    assert err.count("\n") == 1
 
 
 @pytest.mark.parametrize("method", ["traced", "convolution", "pcss"])
@@ -116,10 +155,10 @@ def test_maps_that_are_none(run: Run, cube: Path, tmp_path: Path) -> None:
 
 def test_quality_by_hand() -> None:
     ours, theirs = np.array([[1.0, 1.0, 0.0, 0.25]]), np.array([[1.0, 0.0, 0.0, 0.0]])
-    assert shadow_quality.iou(ours, theirs) == 0.5
-    assert shadow_quality.iou(0.0 * ours, 0.0 * ours) == 1.0
-    assert shadow_quality.soft_difference(ours, theirs) == pytest.approx(1.25 / 3)
-    assert shadow_quality.soft_difference(0.0 * ours, 0.0 * ours) == 0.0
+    assert metrics.iou(ours, theirs) == 0.5
+    assert metrics.iou(0.0 * ours, 0.0 * ours) == 1.0
+    assert metrics.soft_difference(ours, theirs) == pytest.approx(1.25 / 3)
+    assert metrics.soft_difference(0.0 * ours, 0.0 * ours) == 0.0
 
 
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

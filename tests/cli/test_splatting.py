@@ -9,10 +9,11 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from ibr_ref import io, models
-from ibr_ref.cli import options, view_quality
+from ibr_ref import io, metrics, models
+from ibr_ref.cli import options
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
+from tests.io.test_msr import calibration, folder_of, pose, rotation
 
 REAL = Path(__file__).parents[2].parent / "shared" / "data"
 
@@ -126,6 +127,23 @@ def test_photographs_need_a_view(run: Run, tmp_path: Path) -> None:
     assert_one_line(run("render", "splatting", "--msr", tmp_path, "--out", tmp_path / "out.png"), "--view")
 
 
+def test_a_view_needs_no_picture_of_its_own(run: Run, tmp_path: Path) -> None:
+    """Frame 1 was taken by camera 0 alone; the calibration has both."""
+    turned = pose(rotation(), np.array([0.5, 0.25, 0.0]))
+    folder = folder_of(tmp_path, calibration(0) + calibration(1, pose=turned), cameras=(0,), frame=1)
+    call = ("render", "splatting", "--msr", folder, "--cameras", "0", "--frame", "1", "--near", "2", "--far", "10")
+    for view in ("1", "0:1"):
+        out = tmp_path / "out.png"
+        code, said, err = run(*call, "--view", view, "--law", "2,0,0,1", "--report", "--out", out)
+        assert (code, err) == (0, "")
+        assert "photograph" not in said
+        assert imageio.imread(out).shape == (6, 8, 3)
+    code, said, err = run(*call, "--view", "0", "--law", "2,0,0,1", "--report", "--out", out)
+    assert (code, err) == (0, "")
+    assert "against the photograph" in said
+    assert_one_line(run(*call, "--view", "2", "--out", out), "no camera 2")
+
+
 @pytest.mark.parametrize("text", ["", "x", "0:", "0:1:2", "0:1:nan", "0:1:0.5:1", "-1", "1.5"])
 def test_a_bad_view(run: Run, tmp_path: Path, text: str) -> None:
     result = run("render", "splatting", "--msr", tmp_path, f"--view={text}", "--out", tmp_path / "out.png")
@@ -144,12 +162,12 @@ def test_psnr_by_hand() -> None:
     off = truth + 0.1
     off[0, 0] = 1.0
     where = np.array([[False, True], [True, True]])
-    assert view_quality.psnr(off, truth, where) == pytest.approx(20.0)
-    assert view_quality.psnr(truth, truth, where) == np.inf
+    assert metrics.psnr(off, truth, where) == pytest.approx(20.0)
+    assert metrics.psnr(truth, truth, where) == np.inf
 
 
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ibr_ref.cli.bench import splatting
+    from ibr_ref.bench import splatting
 
     scenes = list(splatting.scenes(None))
     assert [name for name, *_ in scenes] == list(splatting.PAPER_MPPS)
@@ -165,7 +183,7 @@ def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyP
 @real_data
 def test_bench_prints_the_quality_of_the_views(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The figures that the README gives, as the issue of this method asks for them."""
-    from ibr_ref.cli.bench import splatting
+    from ibr_ref.bench import splatting
 
     monkeypatch.setattr(splatting, "scenes", lambda msr: iter(()))
     path = tmp_path / "times.json"

@@ -1,4 +1,4 @@
-"""Displacement.md, "Bad input": a ValueError that names the field, the value and what is allowed.
+"""displacement/method.md, "Bad input": a ValueError that names the field, the value and what is allowed.
 
 What a polygon, a camera and a light do not accept on their own is tested in tests/scene.
 """

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
 from ibr_ref import io
-from ibr_ref.io.files import atomic
+from ibr_ref.io.outputs import atomic
 from tests.io.test_images import check_refused, small
 
 

@@ -169,7 +169,7 @@ def compared(image, depth, other):
 
 
 def test_camera_0_seen_from_camera_1_is_the_photograph_of_camera_1(breakdancers):
-    """splatting.md, Inputs: 30.5 dB at width 1 with these conventions, and no others (each wrong one costs 5 dB)."""
+    """30.5 dB at width 1 with these conventions, and no others (each wrong one costs 5 dB)."""
     first, second = breakdancers
     quality, coverage = compared(first, first.depth, second)
     assert quality >= 30.5
@@ -326,3 +326,20 @@ def test_planes_that_are_neither_given_nor_known(tmp_path, options):
     words = (f"{tmp_path / 'calibParams-lobby.txt'}: {field}: found None", "breakdancers, ballet")
     refused(lambda: io.read_msr(tmp_path, cameras=(0,), **options), *words)
     assert io.read_msr(tmp_path, cameras=(0,), near=2.0, far=10.0)
+
+
+def test_cameras_without_pictures(tmp_path):
+    text = calibration(0) + calibration(1, pose=pose(rotation(), np.array([1.0, 0.5, -0.25])))
+    folder = folder_of(tmp_path, text, cameras=(0, 1))
+    images = read(folder, (0, 1))
+    assert io.has_msr_picture(folder, 0, 1)
+    (folder / "depth-cam1-f000.png").unlink()
+    assert not io.has_msr_picture(folder, 0, 1)
+    (folder / "color-cam1-f000.jpg").unlink()
+    cameras = io.read_msr_cameras(folder, (0, 1), WIDTH, HEIGHT, NEAR, FAR)
+    for image, camera in zip(images, cameras, strict=True):
+        assert np.array_equal(image.camera.view_from_world, camera.view_from_world)
+        assert np.array_equal(image.camera.clip_from_view, camera.clip_from_view)
+        assert (camera.width, camera.height) == (WIDTH, HEIGHT)
+    with pytest.raises(ValueError, match="found no camera 2, allowed: the cameras that it has, 0, 1"):
+        io.read_msr_cameras(folder, (2,), WIDTH, HEIGHT, NEAR, FAR)

@@ -1,1 +1,1 @@
-"""The naive twin: a second, plain implementation of the spec pages, written without sight of the package."""
+"""The naive twin: a second, plain implementation of the methods' pages, written without sight of the package."""

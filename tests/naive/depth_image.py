@@ -1,4 +1,4 @@
-"""A reference image with depth: unprojection, 8-bit normals and the atlas (splatting.md, stages 1 and 2)."""
+"""splatting/method.md, "Stage normals" and "Stage atlas": unprojection, 8-bit normals, and the atlas."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def rows4(matrix: Any) -> tuple[Row4, Row4, Row4, Row4]:
 
 
 def affine(row: Row4, p: Vec3) -> float:
-    """One row of a matrix applied to a point of w = 1, summed from left to right (conventions.md, "Rasterization")."""
+    """One row of a matrix applied to a point of w = 1, summed from left to right (conventions.md, "Triangles")."""
     return row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]
 
 
@@ -37,12 +37,12 @@ def size_of(image: Any) -> tuple[int, int]:
 
 
 def is_valid(image: Any, row: int, column: int) -> bool:
-    """Whether the pixel is a point (splatting.md, "Inputs": no mask, all are valid)."""
+    """Whether the pixel is a point (splatting/method.md, "Inputs"; no mask: all are)."""
     return image.mask is None or bool(image.mask[row, column])
 
 
 def view_point(camera: Any, row: int, column: int, depth: float) -> Vec3:
-    """The centre of a pixel in the reference camera's view space (splatting.md, "Inputs", unprojection)."""
+    """The centre of a pixel in the reference camera's view space (splatting/method.md, "Stage vertex")."""
     intrinsics = camera.intrinsics
     f_x, skew, c_x = float(intrinsics[0][0]), float(intrinsics[0][1]), float(intrinsics[0][2])
     f_y, c_y = float(intrinsics[1][1]), float(intrinsics[1][2])
@@ -56,7 +56,7 @@ def view_point(camera: Any, row: int, column: int, depth: float) -> Vec3:
 
 
 def world_points(image: Any) -> Points:
-    """World positions of all pixels, None off the mask (splatting.md, stage 3: T_R->W)."""
+    """World positions of all pixels, None off the mask (splatting/method.md, "Stage vertex")."""
     height, width = size_of(image)
     m = rows4(image.camera.world_from_view)
     points: Points = []
@@ -73,7 +73,7 @@ def world_points(image: Any) -> Points:
 
 
 def depth_step(image: Any, row: int, column: int, other_row: int, other_column: int) -> float | None:
-    """|depth difference| to a neighbour; None if it is off the image, off the mask or across a jump (stage 1)."""
+    """|depth difference| to a neighbour; None if it is off the image, off the mask or across a jump (stage normals)."""
     height, width = size_of(image)
     if not (0 <= other_row < height and 0 <= other_column < width):
         return None
@@ -87,7 +87,7 @@ def depth_step(image: Any, row: int, column: int, other_row: int, other_column: 
 
 
 def chosen_side(after: float | None, before: float | None) -> int:
-    """+1 for right or down, -1 for left or up, 0 for none: the nearer in depth, a tie: right, down (stage 1)."""
+    """+1 for right or down, -1 for left or up, 0 for none: the nearer in depth, a tie: right, down (stage normals)."""
     if after is None:
         return 0 if before is None else -1
     if before is None or after <= before:
@@ -96,7 +96,7 @@ def chosen_side(after: float | None, before: float | None) -> int:
 
 
 def surface_normal(image: Any, points: Points, row: int, column: int, p: Vec3) -> Vec3:
-    """Cross product of the differences to the chosen neighbours; zero without a usable pair (stage 1)."""
+    """Cross product of the differences to the chosen neighbours; zero without a usable pair (stage normals)."""
     right = depth_step(image, row, column, row, column + 1)
     left = depth_step(image, row, column, row, column - 1)
     down = depth_step(image, row, column, row + 1, column)
@@ -113,7 +113,7 @@ def surface_normal(image: Any, points: Points, row: int, column: int, p: Vec3) -
 
 
 def world_normal(image: Any, points: Points, row: int, column: int, p: Vec3) -> Vec3:
-    """The unit normal of a valid pixel in world space, facing the reference camera (stage 1)."""
+    """The unit normal of a valid pixel in world space, facing the reference camera (stage normals)."""
     to_camera = towards(vec4(image.camera.eye), p)
     n = surface_normal(image, points, row, column, p)
     if n[0] == 0.0 and n[1] == 0.0 and n[2] == 0.0:
@@ -125,7 +125,7 @@ def world_normal(image: Any, points: Points, row: int, column: int, p: Vec3) -> 
 
 
 def encode(n: Vec3) -> Code:
-    """8-bit code of a normal, floor(127 n + 128.5) (stage 1)."""
+    """8-bit code of a normal, floor(127 n + 128.5) (stage normals)."""
     return (
         math.floor(127.0 * n[0] + 128.5),
         math.floor(127.0 * n[1] + 128.5),
@@ -134,12 +134,12 @@ def encode(n: Vec3) -> Code:
 
 
 def decode(code: Code) -> Vec3:
-    """The normal read back from its code, (k - 128)/127 normalized (stage 1)."""
+    """The normal read back from its code, (k - 128)/127 normalized (stage normals)."""
     return normalize(((code[0] - 128) / 127.0, (code[1] - 128) / 127.0, (code[2] - 128) / 127.0))
 
 
 def normal_codes(image: Any, points: Points) -> Codes:
-    """8-bit normals of all pixels, (0, 0, 0) off the mask (stage 1)."""
+    """8-bit normals of all pixels, (0, 0, 0) off the mask (stage normals)."""
     codes: Codes = []
     for row, line in enumerate(points):
         coded: list[Code] = []
@@ -150,7 +150,7 @@ def normal_codes(image: Any, points: Points) -> Codes:
 
 
 def pack(images: Any, limit: int) -> list[Rect]:
-    """Shelves from left to right, top to bottom, in input order: (page, x, y, width, height) each (stage 2)."""
+    """Shelves from left to right, top to bottom, in input order: (page, x, y, width, height) each (stage atlas)."""
     rects: list[Rect] = []
     page = x = y = shelf = 0
     for index, image in enumerate(images):
@@ -172,7 +172,7 @@ def pack(images: Any, limit: int) -> list[Rect]:
 
 
 def page_sizes(rects: list[Rect]) -> list[tuple[int, int]]:
-    """(height, width) of each page, cropped to what it holds (stage 2)."""
+    """(height, width) of each page, cropped to what it holds (stage atlas)."""
     sizes: list[tuple[int, int]] = []
     for page, x, y, width, height in rects:
         if page == len(sizes):
@@ -183,7 +183,7 @@ def page_sizes(rects: list[Rect]) -> list[tuple[int, int]]:
 
 
 def atlas(images: Any, codes: list[Codes], limit: int) -> dict[str, Any]:
-    """The stages "atlas.*": rectangles and the three maps of each page (stage 2)."""
+    """The stages "atlas.*": rectangles and the three maps of each page (stage atlas)."""
     rects = pack(images, limit)
     sizes = page_sizes(rects)
     color = tuple(np.zeros((rows, columns, 3), dtype=np.float64) for rows, columns in sizes)

@@ -1,6 +1,6 @@
-"""displacement.md, "Stages": protruded displacement mapping, relief and texture mapping, pixel by pixel.
+"""displacement/method.md: protruded displacement mapping, relief and texture mapping, pixel by pixel.
 
-`stages, color, depth = render(scene, params)`. Clarity first: read it beside the spec page.
+`stages, color, depth = render(scene, params)`. Clarity first: read it beside the page.
 """
 
 from __future__ import annotations
@@ -190,7 +190,7 @@ def store_shade(
 
 @dataclass
 class Params:
-    """See displacement.md, "Inputs"."""
+    """See displacement/method.md, "Inputs"."""
 
     method: str
     interval: str

@@ -1,4 +1,4 @@
-"""displacement.md, "Stages", 3 (march): the search along one view ray, for protruded, relief and texture."""
+"""displacement/method.md, "Stage march": the search along one view ray, for protruded, relief and texture."""
 
 from __future__ import annotations
 

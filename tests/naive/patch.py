@@ -1,4 +1,4 @@
-"""displacement.md, "Inputs" and "Patch space": plain copies of the inputs, and the affine frame of a polygon."""
+"""displacement/method.md, "Inputs" and "Patch space": plain copies of the inputs, and the affine frame of a polygon."""
 
 from __future__ import annotations
 

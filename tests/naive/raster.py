@@ -1,4 +1,4 @@
-"""conventions.md, "Rasterization" and "Images and textures": clipping, snapping, triangles, bilinear fetch."""
+"""conventions.md, "Triangles" and "Texture fetches": clipping, snapping, triangles, bilinear fetch."""
 
 from __future__ import annotations
 
@@ -168,7 +168,7 @@ class Texture:
         ]
 
     def fetch(self, u: float, v: float) -> Texel:
-        """Bilinear, channel by channel (conventions.md, "Images and textures")."""
+        """Bilinear, channel by channel (conventions.md, "Texture fetches")."""
         x = u * self.width - 0.5
         y = v * self.height - 0.5
         x0 = float_floor(x)

@@ -1,4 +1,4 @@
-"""displacement.md, "Stages", 4 (shade): normal, albedo, self-shadow and colour of one hit."""
+"""displacement/method.md, "Stage shade": normal, albedo, self-shadow and colour of one hit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The light of shadows.md: its camera, its samples, and coordinates on the two offset axes."""
+"""The light of shadows/method.md, "Light samples": its camera, its samples, and coordinates on the two offset axes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Rows = tuple[Vec4, Vec4, Vec4, Vec4]
 DIGITS = 60
 TWO_THIRDS = 2.0 / 3.0
 BIAS: Rows = ((0.5, 0.0, 0.0, 0.5), (0.0, -0.5, 0.0, 0.5), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
-"""NDC to (s, t, r): [0, 1]^2 of the map, t downwards (stage 4)."""
+"""NDC to (s, t, r): [0, 1]^2 of the map, t downwards (stage project)."""
 
 
 class LightCamera(NamedTuple):
@@ -68,7 +68,7 @@ def tangent(degrees: float) -> float:
 
 
 def view_axes(light: Any) -> tuple[Vec3, Vec3, Vec3]:
-    """The view's +x, +y and +z in world space: right-handed, looking down -z (conventions.md, "Spaces")."""
+    """The view's +x, +y and +z in world space: right-handed, looking down -z (conventions.md, "In short")."""
     forward = sub(vec3(light.target), vec3(light.position))
     right = normalize(cross(forward, vec3(light.up)))
     forward = normalize(forward)
@@ -82,7 +82,7 @@ def view_from_world(axes: tuple[Vec3, Vec3, Vec3], position: Vec3) -> Rows:
 
 
 def clip_from_view(light: Any) -> Rows:
-    """Square perspective projection, NDC z in [0, 1] and 0 at the near plane (conventions.md, "Spaces")."""
+    """Square perspective projection, NDC z in [0, 1] and 0 at the near plane (conventions.md, "In short")."""
     near, far = float(light.near), float(light.far)
     focal = 1.0 / tangent(float(light.vertical_fov) / 2.0)
     return (
@@ -94,12 +94,12 @@ def clip_from_view(light: Any) -> Rows:
 
 
 def camera_at(light: Any, position: Vec3) -> LightCamera:
-    """The light's camera at one of its samples: it looks the same way as at the centre (stage 5)."""
+    """The light's camera at one of its samples: it looks the same way as at the centre (stage accumulate)."""
     return LightCamera(view_from_world(view_axes(light), position), clip_from_view(light))
 
 
 def transform(rows: Rows, p: Vec4) -> Vec4:
-    """Matrix times column, each row summed from left to right (conventions.md, "Rasterization")."""
+    """Matrix times column, each row summed from left to right (conventions.md, "Triangles")."""
     x, y, z, w = (row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3] * p[3] for row in rows)
     return x, y, z, w
 

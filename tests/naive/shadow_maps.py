@@ -1,4 +1,4 @@
-"""shadows.md, stage 1: the shadow maps of the caster alone, where they are made and how they are drawn."""
+"""shadows/method.md, "Stage maps": the shadow maps of the caster alone, where they are made and how they are drawn."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def placed_vertices(scene: Any, offset: Pair) -> list[Vec3]:
 
 
 def clip_vertices(vertices: list[Vec3], camera: LightCamera) -> list[Vertex]:
-    """World to view to clip, two transforms one after another (conventions.md, "Rasterization")."""
+    """World to view to clip, two transforms one after another (conventions.md, "Triangles")."""
     clips: list[Vertex] = []
     for x, y, z in vertices:
         view = transform(camera.view_from_world, (x, y, z, 1.0))

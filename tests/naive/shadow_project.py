@@ -1,4 +1,4 @@
-"""shadows.md, stage 4: a map projected onto the visible surface, and how close each pixel came to another outcome."""
+"""shadows/method.md, "Stage project": a map on the visible surface, and how close each pixel came to another outcome."""
 
 from __future__ import annotations
 

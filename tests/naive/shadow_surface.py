@@ -1,4 +1,4 @@
-"""What the camera sees of shadows.md's scene: the receivers and the caster through the depth test."""
+"""shadows/method.md, "The surface": what the camera sees, the receivers and the caster through the depth test."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def visible_surface(scene: Any) -> Surface:
 
 
 def resolved_color(fragment: Fragment, shadow: float, scene: Any, eye: Vec4) -> Vec3:
-    """surface (ambient + (1 - ambient) (1 - shadow) max(0, n.l)), n turned to the eye (stage 6)."""
+    """surface (ambient + (1 - ambient) (1 - shadow) max(0, n.l)), n turned to the eye (stage resolve)."""
     normal = fragment.normal
     if dot(normal, towards(eye, fragment.world)) < 0.0:
         normal = negate(normal)

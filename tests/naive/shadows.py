@@ -1,4 +1,4 @@
-"""shadows.md, "Stages": shadows by image warping, and the methods that the paper compares with, in plain loops.
+"""shadows/method.md: shadows by image warping, and the methods that the paper compares with, in plain loops.
 
 `stages, color, depth = render(scene, params, controls)`. The controls are an input, (3, 3, R, C, 2).
 
@@ -80,13 +80,13 @@ def plain_offset(scene: Any) -> Pair:
 
 
 def offset_seen_from(scene: Any, sample: Sample) -> Pair:
-    """The object moved the opposite way from the light sample: o - (l_i - l_centre) on the two axes (stage 5)."""
+    """The object moved the opposite way from the light sample: o - (l_i - l_centre) on the two axes (stage accumulate)."""
     x, y = plain_offset(scene)
     return x - sample.displacement[0], y - sample.displacement[1]
 
 
 def per_sample(arrays: list[Any]) -> np.ndarray:
-    """Stacked along a leading sample axis, which is left out for a single sample (stage 4)."""
+    """Stacked along a leading sample axis, which is left out for a single sample (stage project)."""
     return np.array(arrays) if len(arrays) > 1 else np.array(arrays[0])
 
 
@@ -99,16 +99,38 @@ def prepare(scene: Any, params: Any) -> tuple[np.ndarray, np.ndarray]:
     return positions, prepared_maps(scene, params, positions)
 
 
+def caster_depths(scene: Any, positions: Any) -> np.ndarray:
+    """(3, 3) depth of the middle of the caster's box along the light's view axis, at the nine offsets."""
+    vertices = [vec3(vertex) for vertex in np.asarray(scene.caster.vertices)]
+    middle = tuple((min(v[k] for v in vertices) + max(v[k] for v in vertices)) / 2.0 for k in range(3))
+    a, b = vec3(scene.offset_axes[0]), vec3(scene.offset_axes[1])
+    backwards = camera_at(scene.light, vec3(scene.light.position)).view_from_world[2]
+    depths = np.empty((3, 3))
+    for j in range(3):
+        for i in range(3):
+            x, y = float(positions[j, i, 0]), float(positions[j, i, 1])
+            p = tuple((middle[k] + x * a[k]) + y * b[k] for k in range(3))
+            depths[j, i] = -(backwards[0] * p[0] + backwards[1] * p[1] + backwards[2] * p[2] + backwards[3])
+    return depths
+
+
 def warp_stages(scene: Any, params: Any, samples: list[Sample], controls: Any, maps: Any) -> Stages:
     """The stages "maps.*", "controls" and "warp.*" of the method "warp"."""
     positions, images = prepare(scene, params) if maps is None else maps
-    warps = [warped_map(offset_seen_from(scene, sample), positions, images, controls, params) for sample in samples]
+    depths = caster_depths(scene, positions) if getattr(params, "interpolation", "linear") == "projective" else None
+    warps = [
+        warped_map(offset_seen_from(scene, sample), positions, images, controls, params, depths) for sample in samples
+    ]
     stages = {
         "maps.positions": np.array(positions, dtype=np.float64),
         "maps.image": np.array(images, dtype=np.float64),
         "controls": np.array(controls, dtype=np.float64),
     }
+    if depths is not None:
+        stages["maps.depths"] = depths
     for name in warps[0]._fields:
+        if name == "shares" and depths is None:
+            continue
         stages[f"warp.{name}"] = per_sample([getattr(warp, name) for warp in warps])
     return stages
 

@@ -1,4 +1,4 @@
-"""Square and disc splats of constant depth through the depth test (splatting.md, stage 4; conventions.md, "Points")."""
+"""splatting/method.md, "Stage raster": square and disc splats of constant depth through the depth test."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def covered_span(center: float, width: float, size: int) -> list[int]:
 
 
 def in_disc(column: int, row: int, c_x: float, c_y: float, width: float) -> bool:
-    """dx^2 + dy^2 <= w^2/4 (stage 4, shape "disc")."""
+    """dx^2 + dy^2 <= w^2/4 (stage raster, "Discs")."""
     dx = (column + 0.5) - c_x
     dy = (row + 0.5) - c_y
     return dx * dx + dy * dy <= width * width / 4.0
 
 
 def covered_pixels(splat: Placed, shape: str, height: int, width: int) -> list[tuple[int, int]]:
-    """(row, column) of all pixels that a splat covers; none for a dropped point (stage 4)."""
+    """(row, column) of all pixels that a splat covers; none for a dropped point (stage raster)."""
     if math.isnan(splat.depth):
         return []
     c_x, c_y = snap(splat.x), snap(splat.y)
@@ -60,7 +60,7 @@ def covered_pixels(splat: Placed, shape: str, height: int, width: int) -> list[t
 
 
 def decide(candidates: list[tuple[int, float]]) -> Pixel:
-    """Winner, depth, overdraw and margin from the (vertex, depth) of the covering splats, in order (stage 4)."""
+    """Winner, depth, overdraw and margin from the (vertex, depth) of the covering splats, in order (stage raster)."""
     winner, nearest = -1, 1.0
     for vertex, depth in candidates:
         if depth < nearest:
@@ -73,7 +73,7 @@ def decide(candidates: list[tuple[int, float]]) -> Pixel:
 
 
 def rasterize(splats: list[Placed], shape: str, height: int, width: int) -> dict[str, Any]:
-    """The stages "raster.*" (stage 4)."""
+    """The stages "raster.*" (stage raster)."""
     if shape not in ("square", "disc"):
         raise ValueError(f"params.shape: {shape!r} is neither 'square' nor 'disc'")
     covering: list[list[list[tuple[int, float]]]] = [[[] for _ in range(width)] for _ in range(height)]

@@ -1,4 +1,4 @@
-"""The vertex stage: transforms, Phong lighting and the splat law of one point (splatting.md, stage 3)."""
+"""The vertex stage: transforms, Phong lighting and the splat law of one point (splatting/method.md, "Stage vertex")."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ DROPPED = Placed(math.nan, math.nan, math.nan, 0.0)
 
 
 def view_of(camera: Any, p: Vec3) -> Vec4:
-    """T_W->C: world point to view space, all four rows (stage 3)."""
+    """T_W->C: world point to view space, all four rows (stage vertex)."""
     m = rows4(camera.view_from_world)
     return affine(m[0], p), affine(m[1], p), affine(m[2], p), affine(m[3], p)
 
 
 def clip_of(camera: Any, q: Vec4) -> Vec4:
-    """T_P: view space to clip space, each row with all four components (stage 3)."""
+    """T_P: view space to clip space, each row with all four components (stage vertex)."""
     m = rows4(camera.clip_from_view)
     return (
         m[0][0] * q[0] + m[0][1] * q[1] + m[0][2] * q[2] + m[0][3] * q[3],
@@ -39,7 +39,7 @@ def clip_of(camera: Any, q: Vec4) -> Vec4:
 
 
 def eye_distance(camera: Any, p: Vec3, view: Vec4) -> float:
-    """d of the law: Euclidean from the eye to the point; orthographic: the depth along the view axis (stage 3)."""
+    """d of the law: Euclidean from the eye to the point; orthographic: the depth along the view axis (stage vertex)."""
     if not camera.perspective:
         return -view[2]
     q = sub(p, vec3(camera.eye))
@@ -47,7 +47,7 @@ def eye_distance(camera: Any, p: Vec3, view: Vec4) -> float:
 
 
 def splat_width(params: Any, d: float, vertex: int) -> float:
-    """W_s = alpha / (beta d^2 + gamma d + delta), clamped to [min_width, max_width] (stage 3, "Bad input")."""
+    """W_s = alpha / (beta d^2 + gamma d + delta), clamped to [min_width, max_width] (stage vertex)."""
     denominator = float(params.beta) * (d * d) + float(params.gamma) * d + float(params.delta)
     if not denominator > 0.0:
         raise ValueError(f"params.beta, gamma, delta: denominator {denominator} at vertex {vertex} is not positive")
@@ -56,7 +56,7 @@ def splat_width(params: Any, d: float, vertex: int) -> float:
 
 
 def place(camera: Any, params: Any, p: Vec3, vertex: int) -> Placed:
-    """Window position, depth and width of a world point, or DROPPED outside 0 <= z <= w, w > 0 (stage 3)."""
+    """Window position, depth and width of a world point, or DROPPED outside 0 <= z <= w, w > 0 (stage vertex)."""
     view = view_of(camera, p)
     x, y, z, w = clip_of(camera, view)
     if not (w > 0.0 and 0.0 <= z <= w):
@@ -88,7 +88,7 @@ def light_source(light: Any) -> Vec4:
 
 
 def unit_towards(source: Vec4, p: Vec3) -> Vec3:
-    """The unit vector from the point towards a light or an eye (stage 3); a direction, w = 0, is a unit vector already."""
+    """The unit vector from the point towards a light or an eye (stage vertex); a direction, w = 0, is one already."""
     if source[3] == 0.0:
         return source[0], source[1], source[2]
     return normalize(towards(source, p))
@@ -102,7 +102,7 @@ def per_channel(value: Any) -> Vec3:
 
 
 def highlight(n: Vec3, l: Vec3, v: Vec3, n_dot_l: float, exponent: int) -> float:
-    """max(0, r.v)^e where n.l > 0, else 0; r = 2(n.l)n - l (stage 3)."""
+    """max(0, r.v)^e where n.l > 0, else 0; r = 2(n.l)n - l (stage vertex)."""
     if not n_dot_l > 0.0:
         return 0.0
     twice = 2.0 * n_dot_l
@@ -111,7 +111,7 @@ def highlight(n: Vec3, l: Vec3, v: Vec3, n_dot_l: float, exponent: int) -> float
 
 
 def lit_color(albedo: Vec3, n: Vec3, p: Vec3, light: Any, camera: Any) -> Vec3:
-    """The stored colour without a light, else Phong clamped to [0, 1] (stage 3)."""
+    """The stored colour without a light, else Phong clamped to [0, 1] (stage vertex)."""
     if light is None:
         return albedo
     l = unit_towards(light_source(light), p)

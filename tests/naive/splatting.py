@@ -1,4 +1,4 @@
-"""Naive twin of the splatting of depth images (splatting.md, "Stages"): plain loops over plain floats."""
+"""Naive twin of the splatting of depth images (splatting/method.md): plain loops over plain floats."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Vertex(NamedTuple):
 
 
 def make_vertex(scene: Any, params: Any, index: int, source: tuple[int, int, int], p: Vec3, code: Code) -> Vertex:
-    """One vertex from its world position and its 8-bit normal (stage 3)."""
+    """One vertex from its world position and its 8-bit normal (stage vertex)."""
     image, row, column = source
     albedo = vec3(scene.images[image].color[row, column])
     color = lit_color(albedo, decode(code), p, scene.light, scene.camera)
@@ -29,7 +29,7 @@ def make_vertex(scene: Any, params: Any, index: int, source: tuple[int, int, int
 
 
 def all_vertices(scene: Any, params: Any, points: list[Points], codes: list[Codes]) -> list[Vertex]:
-    """The valid pixels in order of (image, row, column) (stage 3)."""
+    """The valid pixels in order of (image, row, column) (stage vertex)."""
     vertices: list[Vertex] = []
     for image, image_points in enumerate(points):
         for row, line in enumerate(image_points):
@@ -42,7 +42,7 @@ def all_vertices(scene: Any, params: Any, points: list[Points], codes: list[Code
 
 
 def vertex_stages(vertices: list[Vertex]) -> dict[str, Any]:
-    """The stages "vertex.*" (stage 3)."""
+    """The stages "vertex.*" (stage vertex)."""
     count = len(vertices)
     window = np.zeros((count, 2), dtype=np.float64)
     depth = np.zeros(count, dtype=np.float64)
@@ -67,7 +67,7 @@ def vertex_stages(vertices: list[Vertex]) -> dict[str, Any]:
 
 
 def resolve(vertices: list[Vertex], winner: Any, background: Vec3) -> Any:
-    """Colour of the winner, background elsewhere (stage 5)."""
+    """Colour of the winner, background elsewhere (stage resolve)."""
     height, width = winner.shape
     color = np.zeros((height, width, 3), dtype=np.float64)
     for row in range(height):
@@ -80,7 +80,7 @@ def resolve(vertices: list[Vertex], winner: Any, background: Vec3) -> Any:
 
 
 def render(scene: Any, params: Any) -> tuple[dict[str, Any], Any, Any]:
-    """All stages, colour (H, W, 3) and depth (H, W) of a splatted scene (splatting.md, "Stages")."""
+    """All stages, colour (H, W, 3) and depth (H, W) of a splatted scene (splatting/method.md)."""
     points = [world_points(image) for image in scene.images]
     codes = [normal_codes(image, image_points) for image, image_points in zip(scene.images, points, strict=True)]
     stages = atlas(scene.images, codes, int(params.max_atlas_size))

@@ -1,4 +1,4 @@
-"""Three-vectors as tuples of Python floats; every sum from left to right (conventions.md, "Rasterization")."""
+"""Three-vectors as tuples of Python floats; every sum from left to right (conventions.md, "Triangles")."""
 
 from __future__ import annotations
 

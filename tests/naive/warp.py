@@ -1,4 +1,4 @@
-"""shadows.md, stage 3: an image warped by a mesh of control points, and the map for the object at any offset."""
+"""shadows/method.md, "Stage warp": an image warped by control points, and the map for any offset."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ OUTSIDE = {"mask": 0.0, "depth": 1.0}
 
 
 class Warped(NamedTuple):
-    """The stage "warp" of one light sample."""
+    """The stage "warp" of one light sample; `shares` is a stage array with interpolation="projective" only."""
 
     cell: np.ndarray
     fraction: np.ndarray
+    shares: np.ndarray
     row_grids: np.ndarray
     rows: np.ndarray
     grid: np.ndarray
@@ -57,7 +58,7 @@ def mesh_triangles(rows: int, columns: int) -> list[tuple[tuple[int, int], ...]]
 
 
 def snapped(point: Point, size: int) -> tuple[int, int]:
-    """The window position in units of 1/256 pixel, ties to even (conventions.md, "Rasterization")."""
+    """The window position in units of 1/256 pixel, ties to even (conventions.md, "Triangles")."""
     return round(256.0 * (point[0] * size)), round(256.0 * (point[1] * size))
 
 
@@ -101,6 +102,19 @@ def cell_of(value: float, line: list[float]) -> tuple[int, float]:
     return cell, (value - line[cell]) / (line[cell + 1] - line[cell])
 
 
+def paced(f: float, w0: float, w1: float) -> float:
+    """f' = f w1 / ((1 - f) w0 + f w1): how far along in the map what went the share f between depths w0 and w1 is."""
+    return (f * w1) / ((1.0 - f) * w0 + f * w1)
+
+
+def shares_of(s: float, t: float, depths: Any, i: int, j: int) -> tuple[float, float, float]:
+    """The shares of the upper row, the lower row and between the rows; depths (3, 3) or None: an even pace."""
+    if depths is None:
+        return s, s, t
+    w00, w10, w01, w11 = (float(depths[j + b, i + a]) for b in (0, 1) for a in (0, 1))
+    return paced(s, w00, w10), paced(s, w01, w11), paced(t, lerp(w00, w10, s), lerp(w01, w11, s))
+
+
 def between(
     a: np.ndarray, b: np.ndarray, grid_a: Grid, grid_b: Grid, target: Grid, f: float, params: Any
 ) -> np.ndarray:
@@ -115,21 +129,26 @@ def between(
     return mixed_image(first, second, f)
 
 
-def warped_map(offset: Pair, positions: Any, images: Any, controls: Any, params: Any) -> Warped:
-    """The map for the object at an offset, from the nine maps (3, 3, S, S) and their controls (3, 3, R, C, 2)."""
+def warped_map(offset: Pair, positions: Any, images: Any, controls: Any, params: Any, depths: Any = None) -> Warped:
+    """The map for the object at an offset, from the nine maps (3, 3, S, S) and their controls (3, 3, R, C, 2).
+
+    depths (3, 3): the caster's in the nine maps, for interpolation="projective".
+    """
     i, s = cell_of(offset[0], [float(positions[0, k, 0]) for k in range(3)])
     j, t = cell_of(offset[1], [float(positions[k, 0, 1]) for k in range(3)])
     grids, rows = [], []
-    for at in (j, j + 1):
+    upper, lower, across = shares_of(s, t, depths, i, j)
+    for at, f in ((j, upper), (j + 1, lower)):
         left, right = plain_grid(controls[at, i]), plain_grid(controls[at, i + 1])
-        grid = mixed_grid(left, right, s)
+        grid = mixed_grid(left, right, f)
         grids.append(grid)
-        rows.append(between(images[at, i], images[at, i + 1], left, right, grid, s, params))
-    final = mixed_grid(grids[0], grids[1], t)
-    image = between(rows[0], rows[1], grids[0], grids[1], final, t, params)
+        rows.append(between(images[at, i], images[at, i + 1], left, right, grid, f, params))
+    final = mixed_grid(grids[0], grids[1], across)
+    image = between(rows[0], rows[1], grids[0], grids[1], final, across, params)
     return Warped(
         cell=np.array([i, j], dtype=np.int32),
         fraction=np.array([s, t], dtype=np.float64),
+        shares=np.array([upper, lower, across], dtype=np.float64),
         row_grids=np.array(grids, dtype=np.float64),
         rows=np.array(rows),
         grid=np.array(final, dtype=np.float64),

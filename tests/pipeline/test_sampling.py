@@ -1,4 +1,4 @@
-"""Texture fetches, against the sentences of conventions.md in plain Python."""
+"""Texture fetches, against the sentences of conventions.md, "Texture fetches", in plain Python."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def lerp(a: float, b: float, f: float) -> float:
 
 
 def bilinear(image: Floats, u: float, v: float, repeat: bool) -> float:
-    """Conventions.md, "Bilinear fetch", word by word; image (rows, columns)."""
+    """conventions.md, "In short" (bilinear), word by word; image (rows, columns)."""
     rows, columns = image.shape
     x, y = u * columns - 0.5, v * rows - 0.5
     x0, y0 = math.floor(x), math.floor(y)
@@ -61,5 +61,5 @@ def bilinear(image: Floats, u: float, v: float, repeat: bool) -> float:
 
 
 def nearest(u: float, v: float, columns: int, rows: int, repeat: bool) -> int:
-    """Conventions.md, "Nearest fetch": the flat index."""
+    """conventions.md, "In short" (nearest): the flat index."""
     return wrapped(math.floor(v * rows), rows, repeat) * columns + wrapped(math.floor(u * columns), columns, repeat)

@@ -11,7 +11,7 @@ import pytest
 def device() -> Any:
     """OpenGL 4.5 with the reference's clip volume."""
     pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
-    from tests.ports import gl
+    from ibr_ref.ports.glsl import gl
 
     try:
         return gl.create_device()

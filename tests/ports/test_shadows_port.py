@@ -17,6 +17,8 @@ SIZE, ROWS, COLUMNS = 32, 5, 3
 CASES: dict[str, dict[str, Any]] = {
     "dissolve": {},
     "nearest": {"policy": "nearest"},
+    "projective": {"interpolation": "projective"},
+    "projective, nearest, five": {"interpolation": "projective", "policy": "nearest", "light_samples": 5},
     "five": {"light_samples": 5},
     "nine, unorm8": {"light_samples": 9, "accumulation": "unorm8"},
     "coverage": {"map_samples": 3},
@@ -136,8 +138,8 @@ def verdict(given: Case, drawn: Any) -> Verdict:
 def draw(given: Case, device: Any) -> Any:
     """The port's frame of an exported case."""
     pytest.importorskip("moderngl")
-    from tests.ports.described import described
-    from tests.ports.shadows import Port
+    from ibr_ref.ports.described import described
+    from ibr_ref.ports.glsl.shadows import Port
 
     exported = described("shadows", given.scene, given.params, **given.inputs)
     return Port(device).render(exported.scene, exported.params)
@@ -159,8 +161,8 @@ def test_every_stage_is_legal(device: Any, scene: str, name: str) -> None:
 @pytest.mark.parametrize("samples", [1, 3])
 def test_the_nine_maps_are_legal(device: Any, content: str, samples: int) -> None:
     """A port that prepares the maps itself, at the places that it is given."""
-    from tests.ports.described import described
-    from tests.ports.shadows import Port
+    from ibr_ref.ports.described import described
+    from ibr_ref.ports.glsl.shadows import Port
 
     params = shadows.Params(map_size=SIZE, rows=ROWS, columns=COLUMNS, content=content, map_samples=samples)
     given = case("anywhere", "dissolve")

@@ -18,9 +18,9 @@ from ibr_ref.oracle.referees.splatting import SplattingReferee
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 
-from tests.ports.described import described  # noqa: E402
-from tests.ports.gl import Frame  # noqa: E402
-from tests.ports.splatting import Port  # noqa: E402
+from ibr_ref.ports.described import described  # noqa: E402
+from ibr_ref.ports.glsl.gl import Frame  # noqa: E402
+from ibr_ref.ports.glsl.splatting import Port  # noqa: E402
 
 REFEREE = SplattingReferee()
 LIGHTS = {

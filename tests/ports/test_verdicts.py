@@ -19,8 +19,8 @@ MOST_UNDECIDED = 0.005
 
 def examined(case: Case, device: Any, work: Path, **options: Any) -> Examination:
     """Export, draw from the folder, read what was written, judge by the tightest profile that explains it."""
-    from tests.ports.__main__ import draw, write
-    from tests.ports.case_folder import read_case
+    from ibr_ref.ports.__main__ import draw, write
+    from ibr_ref.ports.case_folder import read_case
 
     oracle.export(case, work / "cases" / case.name)
     given = read_case(work / "cases" / case.name)
@@ -75,7 +75,7 @@ def test_quads_in_place_of_point_sprites_pass(name: str, device: Any, tmp_path: 
 @pytest.fixture
 def minus_one(device: Any) -> Iterator[Any]:
     """The same driver with OpenGL's own clip volume, -w <= z <= w."""
-    from tests.ports import gl
+    from ibr_ref.ports.glsl import gl
 
     plain = gl.create_device(clip_control=False)
     yield plain
@@ -134,7 +134,7 @@ BROKEN = {
 def test_a_broken_port_fails_in_the_right_stage(
     mistake: str, device: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tests.ports import gl
+    from ibr_ref.ports.glsl import gl
 
     name, file, (right, wrong), stage = BROKEN[mistake]
     read = gl.source

@@ -1,4 +1,4 @@
-"""The base polygon: what it stores, and what it does not accept (displacement.md, "Bad input")."""
+"""The base polygon: what it stores, and what it does not accept (displacement/method.md, "Bad input")."""
 
 from __future__ import annotations
 

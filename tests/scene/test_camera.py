@@ -125,7 +125,7 @@ def rotation(axis: Array, angle: float) -> Array:
 @derandomized
 @given(vectors, st.floats(-3.0, 3.0), vectors, vectors)
 def test_a_calibrated_camera_projects_with_its_intrinsics(axis: Array, angle: float, t: Array, p_view: Array) -> None:
-    """window = K (x/-z, -y/-z, 1), splatting.md; near and far at depths 0 and 1."""
+    """window = K (x/-z, -y/-z, 1), splatting/method.md, "Inputs"; near and far at depths 0 and 1."""
     assume(np.linalg.norm(axis) > 0.1)
     p_view = np.array([p_view[0], p_view[1], -0.2 - abs(p_view[2])])
     k = np.array([(700.0, 3.0, 330.5), (0.0, 710.0, 251.25), (0.0, 0.0, 1.0)])
@@ -142,7 +142,7 @@ def test_a_calibrated_camera_projects_with_its_intrinsics(axis: Array, angle: fl
 
 
 def test_the_eye_of_a_measured_rotation_comes_from_the_inverse_matrix() -> None:
-    """Not from the transpose: splatting.md. The rotation is off by 1e-4, as printed calibrations are."""
+    """Not from the transpose: splatting/method.md, "Inputs". The rotation is off by 1e-4, as printed calibrations are."""
     r = rotation(np.array([1.0, 2.0, 3.0]), 0.7)
     r[0, 1] += 1e-4
     camera = Camera.calibrated(

@@ -38,7 +38,7 @@ def window(camera: Camera, p_view: Array) -> Array:
 
 
 def window_by_intrinsics(camera: Camera, p_view: Array) -> Array:
-    """splatting.md: K (x/-z, -y/-z, 1), orthographic K (x, -y, 1)."""
+    """splatting/method.md, "Inputs": K (x/-z, -y/-z, 1), orthographic K (x, -y, 1)."""
     x, y, z = p_view
     scale = 1 / -z if camera.perspective else 1.0
     return (camera.intrinsics @ np.array([x * scale, -y * scale, 1.0]))[:2]

@@ -113,7 +113,7 @@ def test_the_error_names_the_field_and_what_was_found(
 
 
 def test_the_error_for_an_array_is_one_line() -> None:
-    """As api.md wants it on the command line."""
+    """As the command line has it."""
     for values in (
         {"intrinsics": np.eye(4)},
         {"rotation": np.full((3, 3), np.nan)},

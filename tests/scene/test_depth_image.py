@@ -1,4 +1,4 @@
-"""The depth image: what it stores, and what it does not accept (splatting.md, "Bad input")."""
+"""The depth image: what it stores, and what it does not accept (splatting/method.md, "Bad input")."""
 
 from __future__ import annotations
 

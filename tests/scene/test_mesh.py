@@ -81,3 +81,15 @@ def test_degenerate_triangles_and_vertices_that_nobody_uses_are_kept() -> None:
     mesh = Mesh(vertices=CORNERS, triangles=[(0, 0, 0), (1, 2, 1)], color=np.zeros((4, 3)))
     assert np.shape(mesh.triangles) == (2, 3)
     assert np.shape(mesh.vertices) == (4, 3)
+
+
+def test_a_mesh_extends_to_the_corners_of_its_triangles() -> None:
+    shades = np.arange(12).reshape(4, 3) / 12
+    mesh = Mesh(vertices=CORNERS * 1e300, triangles=[(3, 1, 0), (1, 3, 0)], color=shades)
+    assert_array_equal(mesh.corners, 1e300 * CORNERS[[0, 1, 3]])
+    assert_array_equal(mesh.bounds, [(0, 0, 0), (1e300, 0, 1e300)])
+    compact = mesh.compact()
+    assert_array_equal(compact.vertices, mesh.corners)
+    assert_array_equal(compact.triangles, [(2, 1, 0), (1, 2, 0)])
+    assert_array_equal(compact.color, shades[[0, 1, 3]])
+    assert_array_equal(Mesh(**VALUES).compact().color, Mesh.color)

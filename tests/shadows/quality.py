@@ -18,12 +18,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref import io, models
-from ibr_ref.cli.shadow_quality import iou, soft_difference
-from ibr_ref.scene import Mesh
+from ibr_ref import models
+from ibr_ref.metrics import iou, soft_difference
 from ibr_ref.shadows import MapGrid, Maps, Params, Scene, prepare, prepare_grid, render, shadow_maps
+from tests.shadows import never_worse, paces
+from tests.shadows.casters import cow, teapot
 
-DATA = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "models"
 OFFSETS, SOFT_OFFSETS = 64, 8
 AREA_OFFSETS, AREA_CELLS = 4, 64
 COUNTS = (1, 5, 9, 64, 1024)
@@ -33,18 +33,6 @@ _BATCH = 64
 """Light samples of a frame: its stages are kept of each."""
 
 Array = NDArray[np.float64]
-
-
-def cow() -> Mesh:
-    """The cow on its feet: the file's y points up."""
-    mesh = io.read_mesh(DATA / "cow.obj")
-    x, y, z = np.asarray(mesh.vertices).T
-    return Mesh(vertices=np.stack([x, -z, y], axis=1), triangles=mesh.triangles)
-
-
-def teapot() -> Mesh:
-    """Newell's teapot."""
-    return io.read_mesh(DATA / "teapot.bpt")
 
 
 OBJECTS = {"cow": cow, "teapot": teapot, "chair": models.chair}
@@ -152,7 +140,22 @@ def main() -> None:
     """Print a table."""
     parser = argparse.ArgumentParser(prog="python -m tests.shadows.quality", description=__doc__)
     parser.add_argument("--soft", action="store_true", help="few light samples against the area light")
-    if parser.parse_args().soft:
+    parser.add_argument("--never-worse", action="store_true", help='"best" beside simpler ways, in many settings')
+    parser.add_argument("--paces", action="store_true", help="the even pace beside the projective one")
+    parser.add_argument("--interpolation", default="linear", choices=["linear", "projective"])
+    parser.add_argument(
+        "--results", type=Path, default=Path("never_worse.jsonl"), help="where --never-worse keeps them"
+    )
+    parser.add_argument("--part", default="0/1", help="--never-worse: I/N, every N-th setting from the I-th on")
+    given = parser.parse_args()
+    if given.never_worse:
+        first, every = map(int, given.part.split("/"))
+        never_worse.run(given.results, given.interpolation, (first, every))
+        return
+    if given.paces:
+        paces.run()
+        return
+    if given.soft:
         titles = ("rendered to the limit", "warped to rendered", "warped to the limit")
         print(f"{'object':<8} {'size':<6} {'samples':<9}" + "".join(f"{title:<22}" for title in titles))
         for name in OBJECTS:

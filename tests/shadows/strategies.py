@@ -6,7 +6,7 @@ offsets on the middle line and on the ends) or spread evenly. What the API rejec
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from ibr_ref.scene import Camera, Mesh
 from ibr_ref.shadows import AreaLight, Params, Scene
 from tests.displacement.strategies import often, real
+from tests.naive.shadow_light import light_samples_of
+from tests.naive.shadow_maps import map_positions
 
 Array = NDArray[np.float64]
 
@@ -174,4 +176,15 @@ def cases(draw: DrawFn) -> Case:
         background=(0.1, 0.2, 0.3),
     )
     params = draw(parameters(light, axes))
-    return Case(scene, params, unfolded_controls(draw(seeds()), params.rows, params.columns))
+    controls = unfolded_controls(draw(seeds()), params.rows, params.columns)
+    if draw(st.booleans()) and in_front(scene, params):
+        params = replace(params, interpolation="projective")
+    return Case(scene, params, controls)
+
+
+def in_front(scene: Scene, params: Params) -> bool:
+    """Whether the caster's middle is in front of the light in all nine maps."""
+    backwards = scene.light.camera(1).view_from_world[2]
+    positions = map_positions(scene, light_samples_of(scene, params)).reshape(9, 2)
+    middles = scene.caster.bounds.mean(axis=0) + positions @ scene.axes
+    return bool((middles @ backwards[:3] + backwards[3] < -1e-3).all())

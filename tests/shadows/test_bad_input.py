@@ -1,4 +1,4 @@
-"""Shadows.md, "Bad input": a ValueError that names the field, the value and what is allowed."""
+"""shadows/method.md, "Bad input": a ValueError that names the field, the value and what is allowed."""
 
 from __future__ import annotations
 

@@ -6,9 +6,10 @@ import pytest
 
 from ibr_ref.shadows import Params, prepare, prepare_grid
 from tests.shadows import quality
+from tests.shadows.casters import DATA
 
 WITH_DATA = pytest.mark.skipif(
-    not quality.DATA.exists(), reason="the cow and the teapot are not beside the repository (../shared/data)"
+    not DATA.exists(), reason="the cow and the teapot are not beside the repository (../shared/data)"
 )
 
 

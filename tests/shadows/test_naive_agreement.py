@@ -37,6 +37,7 @@ def features(case: Case, frame: Frame) -> set[str]:
         f"method {params.method}",
         f"content {params.content}",
         f"policy {params.policy}",
+        f"interpolation {params.interpolation} {params.policy}",
         f"samples {count}",
         f"accumulation {params.accumulation}",
         f"quantize {params.quantize} {params.content}",
@@ -64,6 +65,8 @@ def test_drawn_scene_agrees(number: int, one_thread: None) -> None:
 
 
 EXPECTED = """
+interpolation linear dissolve | interpolation linear nearest
+interpolation projective dissolve | interpolation projective nearest
 method warp | method direct | method grid | content mask | content depth | policy dissolve | policy nearest
 samples 1 | samples 2 | samples 3 | samples 4 | samples 5 | samples 9 | accumulation float | accumulation unorm8
 quantize None mask | quantize 8 mask | quantize None depth | quantize 8 depth | pcf True depth | pcf False depth

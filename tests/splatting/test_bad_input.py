@@ -1,4 +1,4 @@
-"""Splatting.md, "Bad input": a ValueError that names the field, the value and what is allowed.
+"""splatting/method.md, "Bad input": a ValueError that names the field, the value and what is allowed.
 
 What a reference image, a camera and a light do not accept on their own is tested in tests/scene, what files do not in
 tests/io; what the list of the page says of them is here once more. A law that fails in view: test_law.py; an atlas that

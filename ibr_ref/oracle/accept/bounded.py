@@ -116,7 +116,7 @@ class Bounded:
 
 
 def exact(value: ArrayLike, device: Device) -> Bounded:
-    """What the port itself has handed in, or a number that every float32 holds."""
+    """A number that every float32 holds."""
     array = np.asarray(value, np.float64)
     return Bounded(array, np.zeros_like(array), device)
 
@@ -125,6 +125,29 @@ def uploaded(value: ArrayLike, device: Device) -> Bounded:
     """A number of the case, rounded once to float32."""
     array = np.asarray(value, np.float64)
     return Bounded(array, np.abs(array - array.astype(np.float32)), device)
+
+
+def stored(value: ArrayLike, device: Device, own: Bounded | None = None) -> Bounded:
+    """What a port has handed in, as it computed with it: rounded to a float32 at most once where it was stored.
+
+    A port that computes with more digits, or whose compiler keeps more in a register, hands in float32 all the same. own:
+    what the number may be by the port's own inputs; where that is one number, and the port's, nothing was rounded.
+    """
+    array = np.asarray(value, np.float64)
+    rounded = np.isfinite(array)
+    if own is not None:
+        rounded &= (own.error != 0.0) | (own.value != array)
+    return Bounded(array, np.where(rounded, device.operation * UNIT * np.abs(array), 0.0), device)
+
+
+def converted(value: ArrayLike, device: Device, own: Bounded | None = None) -> Bounded:
+    """What a port has handed in of a quotient that the device makes once more before it computes with it.
+
+    A texel k / 255, a depth of 24 bits, s / q in a projective fetch: the one that was handed in is a quotient of the
+    device's, stored; the one that was computed with is another. own: as above.
+    """
+    number = stored(value, device, own)
+    return number.widened(np.where(number.error > 0.0, 2.0 * device.quotient * UNIT * np.abs(number.value), 0.0))
 
 
 def total(terms: Sequence[Bounded]) -> Bounded:
@@ -165,11 +188,15 @@ def opposite(device: Device) -> float:
 
 
 def power(base: Bounded, exponent: int) -> Bounded:
-    """A whole power of a number >= 0 by products in any order."""
-    result = exact(np.ones_like(base.value), base.device)
+    """A whole power of a number >= 0: by products in any order, or exp2(e log2 x) where x > 0, and 0 where x is 0."""
+    device, least = base.device, np.maximum(base.value, np.finfo(np.float64).tiny)
+    logarithm = np.abs(np.log2(least))
+    off = device.logarithm * np.maximum(logarithm, 1.0) + device.operation * logarithm
+    intrinsic = (exponent * np.log(2.0) * off + device.exponential * (1.0 + exponent * logarithm)) * UNIT
+    result = exact(np.ones_like(base.value), device)
     while exponent:
         if exponent % 2:
             result = result * base
         base = base * base
         exponent //= 2
-    return result
+    return result.widened(np.where(result.size > TINY, result.size * intrinsic, 0.0))

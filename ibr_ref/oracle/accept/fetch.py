@@ -20,6 +20,9 @@ from ibr_ref.oracle.device import UNIT
 
 Floats = NDArray[np.float64]
 
+FARTHEST = 1e9
+"""Texels beyond it are not told apart: a float32 does not, and whole numbers end somewhere."""
+
 FILTER_ROUNDINGS = 8.0
 """Of a filter in float arithmetic: two nested lerps, each 1 - f, two products and a sum on numbers no larger than the
 largest texel in reach, and one rounding of the texel itself."""
@@ -59,7 +62,7 @@ class Texture:
         """The four texels (00, 10, 01, 11; x first) around x = u W - 0.5, y = v H - 0.5, and the fractions."""
         height, width = self.texels.shape[:2]
         x0, y0 = np.floor(x), np.floor(y)
-        column, row = x0.astype(np.int64), y0.astype(np.int64)
+        column, row = (np.clip(c, -FARTHEST, FARTHEST).astype(np.int64) for c in (x0, y0))
         columns = [self._wrapped(column + j, width) for j in (0, 1)]
         rows = [self._wrapped(row + i, height) * width for i in (0, 1)]
         return [self._gather(r + c) for r in rows for c in columns], self.spread(x - x0), self.spread(y - y0)
@@ -115,7 +118,7 @@ def highest_around(texture: Texture, u: Bounded, v: Bounded) -> Floats:
     for c, size in ((u, texture.texels.shape[1]), (v, texture.texels.shape[0])):
         x = c.value * size
         sure &= c.error * size + off * (np.abs(x) + 1.0) + c.device.weight_step < 1.0
-        texels.append(np.floor(np.clip(np.nan_to_num(x), -1e9, 1e9)).astype(np.int64))
+        texels.append(np.floor(np.clip(np.nan_to_num(x), -FARTHEST, FARTHEST)).astype(np.int64))
     # A fetch at x takes the texels floor(x - 0.5) and the next one, so those within 1 of floor(x); off by one, within 2.
     most = Texture(texture.extremes(2)[1], texture.repeat).at(texels[1], texels[0])
     rounding = FILTER_ROUNDINGS * u.device.operation * UNIT * texture.largest
@@ -123,7 +126,7 @@ def highest_around(texture: Texture, u: Bounded, v: Bounded) -> Floats:
 
 
 def _finite(error: Floats) -> Floats:
-    return np.where(np.isfinite(error), error, 1e9)
+    return np.where(np.isfinite(error), error, FARTHEST)
 
 
 def spread_around(texture: Texture, x: Floats, y: Floats, off_x: Floats, off_y: Floats, value: Floats) -> Floats:
@@ -137,7 +140,7 @@ def spread_around(texture: Texture, x: Floats, y: Floats, off_x: Floats, off_y: 
         here = np.flatnonzero((wide >= 0.5) & (wide <= reach))
         if len(here):
             wide[here] = 0.0
-            columns, rows = (np.floor(np.clip(c[here], -1e9, 1e9)).astype(np.int64) for c in (x, y))
+            columns, rows = (np.floor(np.clip(c[here], -FARTHEST, FARTHEST)).astype(np.int64) for c in (x, y))
             least, most = (Texture(e, texture.repeat).at(rows, columns) for e in texture.extremes(reach + 1))
             error[here] = np.maximum(most - value[here], value[here] - least)
     if (wide >= 0.5).any():
@@ -154,7 +157,7 @@ def _stations(x: Floats, off: Floats) -> tuple[Floats, Floats, Floats]:
 def texels_near(count: int, u: Bounded, repeat: bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The first and last texel index that a nearest fetch may take along an axis of `count` texels, before the wrap mode."""
     x = u * exact(float(count), u.device)
-    low, high = (np.floor(np.clip(end, -1e9, 1e9)).astype(np.int64) for end in (x.low, x.high))
+    low, high = (np.floor(np.clip(end, -FARTHEST, FARTHEST)).astype(np.int64) for end in (x.low, x.high))
     if repeat:
         return low, high
     return np.clip(low, 0, count - 1), np.clip(high, 0, count - 1)

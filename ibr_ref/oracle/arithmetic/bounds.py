@@ -53,11 +53,12 @@ class Bounds(Decisions):
 
     def named(self, name: str, x: Any) -> Number:
         """What is used again: its own error becomes a symbol, one that no other number has."""
-        x = self.of(x)
-        if not np.any(x.error):
-            return x
+        number = self.of(x)
+        if not np.any(number.error):
+            return number
         self.names[name] = self.names.get(name, 0) + 1
-        return Number(self, x.value, 0.0, {**x.slopes, f"{name} {self.names[name]}": x.error}, x.lane)
+        slopes = {**number.slopes, f"{name} {self.names[name]}": number.error}
+        return Number(self, number.value, 0.0, slopes, number.lane)
 
     def rounded(self, x: Number, units: float) -> Number:
         """After a rounding; an exact 0 stays exact."""
@@ -92,10 +93,10 @@ class Bounds(Decisions):
 
     def multiply(self, a: Any, b: Any) -> Number:
         """A b; by 1 it is exact where products are correctly rounded."""
-        a, b = self.of(a), self.of(b)
-        if self.device.operation <= 1.0 and (_is(a, 1.0) or _is(b, 1.0)):
-            return b if _is(a, 1.0) else a
-        return self.rounded(self.product(a, b), self.device.operation)
+        first, second = self.of(a), self.of(b)
+        if self.device.operation <= 1.0 and (_is(first, 1.0) or _is(second, 1.0)):
+            return second if _is(first, 1.0) else first
+        return self.rounded(self.product(first, second), self.device.operation)
 
     def quotient(self, a: Any, b: Any) -> Number:
         """A / b, not rounded: (a - q b) / b with q = the quotient of the values, to first order over b's value."""
@@ -156,14 +157,19 @@ class Bounds(Decisions):
         return [self.within(self.divide(x, length), -most, most) for x in a]
 
     def power(self, base: Any, exponent: int) -> Number:
-        """A whole power."""
-        base = self.of(base)
+        """A whole power of a number >= 0: by products, or exp2(e log2 x) where x > 0, and 0 where x is 0."""
+        base, device = self.of(base), self.device
+        logarithm = np.abs(np.log2(np.maximum(base.value, np.finfo(np.float64).tiny)))
+        off = device.logarithm * np.maximum(logarithm, 1.0) + device.operation * logarithm
+        intrinsic = (exponent * np.log(2.0) * off + device.exponential * (1.0 + exponent * logarithm)) * UNIT
         result = self.of(np.ones(base.shape))
         while exponent:
             if exponent % 2:
                 result = self.multiply(result, base)
             base, exponent = self.multiply(base, base), exponent // 2
-        return result
+        size = np.abs(result.value) + result.deviation
+        error = result.error + np.where(size > TINY, size * intrinsic, 0.0)
+        return Number(self, result.value, error, result.slopes, result.lane)
 
     # --- Legal alternatives, and what is known besides -------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.number import Bools, Ints, Number, Truth
+from ibr_ref.oracle.arithmetic.number import Bools, Ints, Number, Truth, slope
 
 MOST_DECISIONS = 48
 """Open decisions on one path of the program; beyond, the lane is lost."""
@@ -107,5 +107,5 @@ def joined(parts: list[Any]) -> Any:
         return np.concatenate([np.broadcast_to(get(p), p.shape) for p in parts])
 
     names = {name: None for part in parts for name in part.slopes}
-    slopes = {k: column(lambda p, k=k: p.slopes.get(k, 0.0)) for k in names}
+    slopes = {k: column(slope(k)) for k in names}
     return Number(parts[0].ops, column(lambda p: p.value), column(lambda p: p.error), slopes)

@@ -36,6 +36,8 @@ class Policy:
     loose: int = 0
     """Quotients and square roots move by up to so many units in the last place more than they are rounded, as Vulkan and
     WGSL grant two; as `jitter` moves them."""
+    intrinsic_power: bool = False
+    """A power is exp2(e log2 x), as pow() is; with `loose` the logarithm is off as far as Vulkan grants."""
     jitter: int = 0
     """Every result moves by up to so many units in the last place, at random, equal ones alike: a device that is given the
     same numbers twice gives the same result, and a corner that two triangles share is one point."""
@@ -215,7 +217,13 @@ class Arithmetic:
         return [self.divide(x, safe) for x in a]
 
     def power(self, base: ArrayLike, exponent: int) -> Floats:
-        """A whole power by repeated squaring, lowest bit first."""
+        """A whole power by repeated squaring, lowest bit first, or as pow() has it."""
+        if self.policy.intrinsic_power:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                logarithm = np.log2(np.asarray(base, np.float64))
+            if self.policy.loose:
+                logarithm = logarithm + (_scattered(logarithm, self.policy.seed) % np.uint64(3) - 1.0) * 2.0**-21.5
+            return self.round(np.exp2(self.multiply(exponent, self.round(logarithm))))
         result, base = np.ones_like(np.asarray(base, np.float64)), np.asarray(base, np.float64)
         while exponent:
             if exponent % 2:

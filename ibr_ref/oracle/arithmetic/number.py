@@ -31,7 +31,7 @@ class _Speaks:
     """NumPy's functions, by the tables of numpy_names.py."""
 
     __slots__ = ()
-    ops: Any
+    ops: Bounds
 
     def __array_function__(self, function: Any, types: Any, arguments: Any, named: Any) -> Any:
         return self.ops.functions[function](self.ops, *arguments, **named)
@@ -122,7 +122,10 @@ class Number(_Speaks):
     @property
     def T(self) -> list[Number]:  # noqa: N802 as NumPy has it
         """Components of (n, c)."""
-        return [self.each(lambda x, c=c: x[..., c], self.lane) for c in range(self.shape[-1])]
+        return [self._component(c) for c in range(self.shape[-1])]
+
+    def _component(self, c: int) -> Number:
+        return self.each(lambda x: x[..., c], self.lane)
 
     def astype(self, dtype: Any) -> Any:
         """Whole numbers are decided; another float type is a rounding that nowhere falls."""
@@ -256,3 +259,8 @@ class Truth(_Speaks):
 
     def __len__(self) -> int:
         return self.shape[0]
+
+
+def slope(symbol: str) -> Callable[[Number], Any]:
+    """What gives a number's slope along a symbol."""
+    return lambda x: x.slopes.get(symbol, 0.0)

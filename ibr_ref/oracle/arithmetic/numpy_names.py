@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.number import Number, Truth
+from ibr_ref.oracle.arithmetic.number import Number, Truth, slope
 
 
 def _where(ops: Any, condition: Any, a: Any, b: Any) -> Any:
@@ -38,7 +38,7 @@ def _column(parts: Any, put: Callable[..., Any], axis: int) -> Number:
     def column(get: Callable[[Number], Any]) -> Any:
         return put([np.broadcast_to(get(x), x.shape) for x in numbers], axis=axis)
 
-    slopes = {k: column(lambda x, k=k: x.slopes.get(k, 0.0)) for k in names}
+    slopes = {k: column(slope(k)) for k in names}
     return Number(ops, column(lambda x: x.value), column(lambda x: x.error), slopes, ops.lane(*numbers))
 
 

@@ -33,8 +33,11 @@ class Case:
     """What else is given: "maps" (shadows.Maps), "normals" (uint8 (H, W, 3), one an image, of splatting)."""
 
     def __post_init__(self) -> None:
-        """Raise ValueError for what no referee judges: another method, the systems that the papers compare with."""
+        """Raise ValueError for what no referee judges, the systems that the papers compare with, and for a pow(0, 0)."""
         checks.choice("method", self.method, ("displacement", "splatting", "shadows"))
+        light = getattr(self.scene, "light", None)
+        if getattr(light, "exponent", 1) == 0:
+            raise checks.reject("exponent", 0, "1 or more in a case: a port's pow(0, 0) is undefined")
         if self.method == "displacement":
             checks.choice("method", self.params.method, ("protruded",))
         elif self.method == "splatting":

@@ -258,6 +258,25 @@ def loose() -> Case:
     )
 
 
+def _rim() -> BasePolygon:
+    """Low ground with a ridge along its far border and a bank along a side: what is high is at the very edge of the map."""
+    heights = _smooth((40, 48), 0.08, 0.31, 0.2)
+    heights[:, -3:] = 0.83
+    heights[-4:, :] = 0.57
+    return _sheared(height_map=heights)
+
+
+def rim() -> Case:
+    """Lines of sight that all but lie in the polygon's plane, and a shadow from the border."""
+    camera = _looking(eye=(-0.1, -0.95, 0.25), target=(1.35, -0.3, 0.2), vertical_fov=28.0)
+    light = Light(direction=(1.0, 0.25, 0.4), ambient=0.23, diffuse=0.7)
+    scene = Scene(polygons=[_rim()], camera=camera, light=light, background=(0.31, 0.11, 0.2))
+    about = (
+        "A ridge along the border of the map, seen at a grazing angle and against the sun: its shadow is of the border."
+    )
+    return _case("rim", "adversarial", about, scene, _params(linear_steps=40, binary_steps=2, shadow_steps=2))
+
+
 def metropolis() -> Case:
     """A picture of real size."""
     camera = _looking(eye=(2.6, -3.14, 2.02), target=(0.0, 0.0, 0.0), vertical_fov=52.0, width=640, height=480)
@@ -272,7 +291,7 @@ CASES: dict[str, Callable[[], Case]] = {
     f"displacement-{make.__name__}": make
     for make in (
         box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing,
-        borders, metropolis,
+        borders, rim, metropolis,
     )
 }  # fmt: skip
 """By name."""

@@ -7,6 +7,7 @@ what separates the surfaces: so that float32 cannot turn many decisions. Each ca
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -89,7 +90,7 @@ def _scene(**changes: Any) -> Scene:
         "offset": (0.35, -0.4),
         "light": _light(),
         "camera": _camera(),
-        "ambient": 0.2,
+        "ambient": 0.23,
         "background": (0.61, 0.703, 0.91),
     }
     return Scene(**{**values, **changes})
@@ -249,6 +250,15 @@ def coarse() -> Case:
     return _case("coarse", "adversarial", about, _scene(), params, profile="gl")
 
 
+def pace() -> Case:
+    """Projective fractions."""
+    about = "A light aside and near: maps are passed through at the projective pace; five light samples."
+    light = _light(position=(-1.6, -1.3, 1.9), target=(0.0, 0.0, 0.0), vertical_fov=75.0, near=0.3)
+    scene = _scene(light=light, offset_range=((-0.6, 0.7), (-0.7, 0.5)), offset=(0.3, -0.35))
+    params = _params(interpolation="projective", light_samples=5, map_samples=2)
+    return _case("pace", "adversarial", about, scene, params, profile="gl")
+
+
 def thin() -> Case:
     """Thin things."""
     about = "A rack of thin bars under five light samples, the 8-bit frame buffer."
@@ -256,16 +266,43 @@ def thin() -> Case:
     return _case("thin", "adversarial", about, _scene(caster=rack()), params, profile="webgpu")
 
 
+def listed() -> Case:
+    """Samples of its own."""
+    light = _light()
+    moves = np.array([(0.7, -0.5), (-0.3, 0.6), (0.0, 0.0), (-0.8, -0.4)])
+    samples = light.arrays[0] + moves @ light.arrays[1]
+    about = "Four light samples that the case lists itself, in no order: the light's centre is the third."
+    return _case("listed", "typical", about, _scene(light=light), _params(light_samples=samples), profile="gl")
+
+
+def verge() -> Case:
+    """Four comparisons on the border of the map."""
+    about = "A narrow light: depths rendered anew cross the map's border; the mix of four comparisons of bytes, often equal."
+    params = _params(method="direct", content="depth", pcf=True, quantize=8, bias=3e-3)
+    return _case("verge", "adversarial", about, _narrow(), params, profile="gl")
+
+
+def beyond() -> Case:
+    """No bias."""
+    about = (
+        "Depths rendered anew and compared without a bias: beyond the light's far plane both sides are 1, and equal."
+    )
+    camera = _camera(eye=(-0.9, -0.7, -0.35), target=(0.9, 0.6, -1.0), vertical_fov=60.0)
+    scene = replace(_low(), camera=camera)
+    return _case("beyond", "adversarial", about, scene, _params(method="direct", content="depth", bias=0.0))
+
+
 def stage() -> Case:
     """Of real size."""
     about = "A chair on a stage, 640 x 480, five light samples, maps of 128 x 128, grids of 15 x 5 as in the paper."
-    scene = shadow_stage(models.chair(), offset=(0.23, -0.17))
+    scene = shadow_stage(models.chair(), offset=(0.23, -0.17), near=0.1, far=30.0)
     params = Params(map_size=128, light_samples=5)
     return _case("stage", "real-sized", about, scene, params, profile="webgpu")
 
 
 _MAKERS = (
-    box, soft, nearest, depths, direct, masks, bent, oblique, beside, border, behind, far, filtered, coarse, thin, stage,
+    box, soft, nearest, depths, direct, masks, bent, oblique, beside, border, behind, far, filtered, coarse, pace, thin,
+    listed, verge, beyond, stage,
 )  # fmt: skip
 
 CASES: dict[str, Callable[[], Case]] = {f"shadows-{make.__name__}": cache(make) for make in _MAKERS}

@@ -135,9 +135,9 @@ def among() -> Case:
         width=96,
         height=72,
     )
-    light = Light(position=(0.0, 0.3, -0.5), specular=0.2, exponent=0)
+    light = Light(position=(0.1, 1.6, -0.8), specular=0.4, exponent=2)
     scene = Scene(images=[image], camera=view, light=light, background=(0.91, 0.51, 0.11))
-    about = "An eye among the points: behind it, before the near plane, beyond the far one, filling the picture."
+    about = "An eye among the points, against the light: behind it, before the near plane, beyond the far one."
     return case("among", "adversarial", about, "ieee32", scene, Params(alpha=25.0, beta=2.0, delta=0.1, max_width=60.0))
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.oracle.files.handed import Slot
 from ibr_ref.oracle.files.npy import LONGEST_HEADER, decode_bytes
-from ibr_ref.oracle.files.problem import UnusableError, shortened
+from ibr_ref.oracle.files.problem import UnusableError
 
 MOST_MEMBERS = 1000
 
@@ -28,8 +28,8 @@ def opened(path: Path, name: str) -> Iterator[zipfile.ZipFile]:
             yield archive
     except UnusableError:
         raise
-    except Exception as error:  # damaged archives break zipfile and zlib in any way
-        raise UnusableError(name, shortened(f"no whole archive ({error})"), "a NumPy archive (.npz)") from None
+    except Exception:  # damaged archives break zipfile and zlib in any way
+        raise UnusableError(name, "no whole archive", "a NumPy archive (.npz)") from None
 
 
 def member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, slot: Slot, file: str) -> NDArray[Any]:

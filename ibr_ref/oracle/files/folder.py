@@ -12,6 +12,7 @@ from os import PathLike
 from pathlib import Path
 
 from ibr_ref.oracle.files.problem import UnusableError
+from ibr_ref.scene.checks import named
 
 
 def existing_folder(folder: str | PathLike[str]) -> Path:
@@ -20,10 +21,10 @@ def existing_folder(folder: str | PathLike[str]) -> Path:
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise FileNotFoundError(f"{path}: cannot be read ({reason}), a folder is needed") from None
+        reason = getattr(error, "strerror", None) or "no file's name"
+        raise FileNotFoundError(f"{named(path)}: cannot be read ({reason}), a folder is needed") from None
     if not stat.S_ISDIR(mode):
-        raise NotADirectoryError(f"{path}: is no folder")
+        raise NotADirectoryError(f"{named(path)}: is no folder, one is needed")
     return path
 
 
@@ -39,9 +40,8 @@ def file_inside(folder: Path, name: str, label: object = None) -> Path:
     except FileNotFoundError:
         raise UnusableError(label, "no such file", "a file") from None
     except (OSError, RuntimeError, ValueError) as error:
-        raise UnusableError(
-            label, f"what cannot be read ({getattr(error, 'strerror', None) or error})", "a file"
-        ) from None
+        reason = getattr(error, "strerror", None) or "no file's name"
+        raise UnusableError(label, f"what cannot be read ({reason})", "a file") from None
     if not inside:
         raise UnusableError(label, "a link that leads out of the folder", "a file in it")
     if not stat.S_ISREG(mode):
@@ -62,10 +62,13 @@ def small_file(folder: Path, name: str, most: int, label: object = None) -> byte
 def atomic_folder(folder: Path) -> Iterator[Path]:
     """Make a folder under a temporary name beside `folder`; it takes the name, and the place of what is there, at the end.
 
+    A link is followed: what it leads to is made or replaced.
+
     Missing folders above it are made. Raises OSError with the path where it cannot be made. Whatever ends the block early
     leaves nothing behind but those.
     """
     made: Path | None = None
+    name, folder = named(folder), Path(os.path.realpath(folder))
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         made = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
@@ -76,7 +79,7 @@ def atomic_folder(folder: Path) -> Iterator[Path]:
         _take_place(made, folder)
     except OSError as error:
         if error.strerror:
-            raise OSError(f"{folder}: cannot be written ({error.strerror})") from None
+            raise OSError(f"{name}: cannot be written ({error.strerror})") from None
         raise
     finally:
         if made is not None:

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.contract import described
 from ibr_ref.oracle.accept.bytes import read_back
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.files.npy import Accept, Header
 from ibr_ref.oracle.files.pictures import turned
 from ibr_ref.oracle.files.problem import UnusableError
-from ibr_ref.oracle.schema.stages import expected
+from ibr_ref.oracle.schema.stages import CONTRACTS, expected
 
 _KINDS = {
     "f": ("f", "float32 or float64"),
@@ -24,6 +25,9 @@ _KINDS = {
     "b": ("biu", "booleans, or integers 0 and 1"),
 }
 """By the kind of the reference's array: the kinds that are allowed, and in words. Integers are never floats."""
+
+MOST_FACES = 64
+"""That a port may hand in for a polygon, which has six."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +38,14 @@ class Slot:
     shape: tuple[int, ...]
     dtype: np.dtype[Any]
     """The reference's."""
+    most_faces: int = 0
+    """Of an array with four rows a face: how many it may have, right or not. Too many or too few are the port's fault."""
 
     @property
     def shapes(self) -> list[tuple[int, ...]]:
         """Allowed shapes; the final colour may come with an alpha, which is not looked at."""
+        if self.most_faces:
+            return [(4 * faces, *self.shape[1:]) for faces in range(self.most_faces + 1)]
         return [self.shape, (*self.shape[:2], 4)] if self.name == "color" else [self.shape]
 
     def check(self, header: Header, file: object) -> None:
@@ -52,7 +60,8 @@ class Slot:
             raise UnusableError(file, f"{header.dtype}", words)
         if header.shape not in self.shapes:
             remark = turned(header.shape, self.shape)
-            raise UnusableError(file, f"the shape {header.shape}{remark}", " or ".join(map(str, self.shapes)))
+            allowed = f"four rows a face, {self.shape}" if self.most_faces else " or ".join(map(str, self.shapes))
+            raise UnusableError(file, f"the shape {header.shape}{remark}", allowed)
 
     def accept(self, file: object) -> Accept:
         """The check of a file's header."""
@@ -84,8 +93,18 @@ class Slots:
     """All names of a case; drawn from its frame."""
 
     def __init__(self, case: Case) -> None:
-        self.by_name = {name: Slot(name, array.shape, array.dtype) for name, array in expected(case.frame).items()}
-        self.pages = {name: len(stage) for name, stage in case.frame.stages.items() if isinstance(stage, tuple)}
+        contract = CONTRACTS[case.method]
+        corners = MOST_FACES * len(case.scene.polygons) if case.method == "displacement" else 0
+        self.by_name = {
+            name: Slot(
+                name,
+                array.shape,
+                np.dtype(described(contract, name).dtype),
+                corners if name.startswith("vertex.") else 0,
+            )
+            for name, array in expected(case.frame).items()
+        }
+        self.pages = {name: len(case.frame.stages[name]) for name, entry in contract.items() if entry.paged}
         """Of the stages of several arrays."""
 
     def named(self, name: str, file: object) -> Slot:

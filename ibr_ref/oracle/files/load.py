@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from ibr_ref.io.files import naming
 from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.files.consistency import check_arrays, check_cameras, check_expected, check_picture, check_same
 from ibr_ref.oracle.files.folder import existing_folder, file_inside, small_file
 from ibr_ref.oracle.files.manifest import Manifest, digest_of_bytes
 from ibr_ref.oracle.files.npy import Accept, Header, digest, read_array
@@ -18,25 +19,42 @@ from ibr_ref.oracle.files.pictures import read_bytes
 from ibr_ref.oracle.files.problem import UnusableError, field_problem
 from ibr_ref.oracle.files.write import LARGEST_DOCUMENT
 from ibr_ref.oracle.schema import ADAPTER, Document, build, describe_inputs, input_files
-from ibr_ref.oracle.schema.base import Stored, StoredFile
+from ibr_ref.oracle.schema.base import Inputs, Stored, StoredFile
 from ibr_ref.oracle.schema.stages import expected
+from ibr_ref.shadows.render import check_maps
 
 
 def load_case(folder: str | PathLike[str]) -> Case:
     """The case of a folder; the reference draws it with the same bits as before it was exported.
 
-    Every file is read and its hash compared; the scene is built, described anew and compared with the document, so that
-    no matrix contradicts another. Raises OSError or ValueError, one line that names the file, for anything else.
+    Every file is read and its hash compared; the scene is built, described anew and compared with the document, number by
+    number, so that nothing contradicts what it follows from: no matrix another, no PNG its array, no prepared map its
+    scene. near, far and eye may differ from the matrices by rounding (`schema.camera.contradiction`), and intrinsics by
+    1e-9 of the largest. Raises OSError or ValueError, one line that names the file, for anything else.
     """
     path = existing_folder(folder)
     document, manifest = _documents(path)
     stored = _arrays(path, document, manifest)
     where = path / "case.json"
     with naming(where):
-        case = build(document, stored)
-        again, _ = describe_inputs(case)
-    _check_same(f"{where}: ", _scene_of(document), _scene_of(again))
+        check_cameras("scene", document.scene)
+        case, again, inputs = _built(document, stored)
+    check_expected(f"{where}: ", document)
+    check_same(f"{where}: ", _scene_of(document), _scene_of(again))
+    made = {name: digest(array) for name, array in {**inputs.arrays, **inputs.images}.items()}
+    check_arrays(path, made, manifest.arrays)
     return case
+
+
+def _built(document: Document, stored: Stored) -> tuple[Case, Document, Inputs]:
+    """The case, and what it is described as. Raises ValueError for what is none."""
+    try:
+        case = build(document, stored)
+        if document.method == "shadows" and document.params.method == "warp":
+            check_maps(case.scene, case.params, case.inputs.get("maps"))
+        return (case, *describe_inputs(case))
+    except ValidationError as error:
+        raise field_problem("scene", error) from None
 
 
 def changed_stages(case: Case, folder: str | PathLike[str]) -> list[str]:
@@ -83,7 +101,9 @@ def _arrays(path: Path, document: Document, manifest: Manifest) -> Stored:
             stored[file.file] = array
         if file.png is not None:
             picture = file_inside(path, file.png)
-            _check_hash(picture, digest(read_bytes(picture, [file.shape])), manifest.arrays[file.png])
+            codes = read_bytes(picture, [file.shape])
+            _check_hash(picture, digest(codes), manifest.arrays[file.png])
+            check_picture(picture, file, array, codes)
     return stored
 
 
@@ -104,17 +124,3 @@ def _check_hash(where: Path, found: str, allowed: str | None) -> None:
 
 def _scene_of(document: Document) -> dict[str, Any]:
     return {"params": document.params, "scene": document.scene}
-
-
-def _check_same(where: str, found: Any, allowed: Any) -> None:
-    """Raise UnusableError for the first part of a document that differs from what the rest of it says."""
-    if isinstance(found, BaseModel) and type(found) is type(allowed):
-        found, allowed = dict(found), dict(allowed)
-    if isinstance(found, dict) and isinstance(allowed, dict) and found.keys() == allowed.keys():
-        for name in found:
-            _check_same(f"{where}{'' if where.endswith(' ') else '.'}{name}", found[name], allowed[name])
-    elif isinstance(found, tuple) and isinstance(allowed, tuple) and len(found) == len(allowed):
-        for i, pair in enumerate(zip(found, allowed, strict=True)):
-            _check_same(f"{where}[{i}]", *pair)
-    elif found != allowed:
-        raise UnusableError(where, found, f"{allowed}, which the rest of the case makes of it")

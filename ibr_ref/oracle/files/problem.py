@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
-_LONGEST = 200
+from ibr_ref.scene.checks import LONGEST_NAME, named, one_line
 
 
 @dataclass(frozen=True)
@@ -19,9 +20,9 @@ class Problem:
     allowed: str
 
     def __post_init__(self) -> None:
-        for name in ("file", "found", "allowed"):  # names of files need not be text
-            text = getattr(self, name).encode("utf-8", "backslashreplace").decode()
-            object.__setattr__(self, name, text)
+        object.__setattr__(self, "file", named(self.file))  # names of files need not be text
+        object.__setattr__(self, "found", one_line(self.found))
+        object.__setattr__(self, "allowed", one_line(self.allowed, LONGEST_NAME))
 
     def __str__(self) -> str:
         return f"{self.file}: found {self.found}, allowed: {self.allowed}"
@@ -31,14 +32,8 @@ class UnusableError(ValueError):
     """Raised for a file that cannot be used."""
 
     def __init__(self, file: object, found: object, allowed: str) -> None:
-        self.problem = Problem(str(file), shortened(found), allowed)
+        self.problem = Problem(str(file), str(found), allowed)
         super().__init__(str(self.problem))
-
-
-def shortened(found: object) -> str:
-    """What was found, on one line of bounded length."""
-    text = " ".join(str(found).split())
-    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
 def field_problem(file: object, error: ValidationError) -> UnusableError:
@@ -51,4 +46,11 @@ def field_problem(file: object, error: ValidationError) -> UnusableError:
     if first["type"] == "missing":
         return UnusableError(where, "nothing", "this field, which the schema requires")
     found = first["input"] if first["type"] != "json_invalid" else "what is no JSON"
-    return UnusableError(where, repr(found) if isinstance(found, (str, bytes)) else found, shortened(first["msg"]))
+    return UnusableError(where, repr(found) if isinstance(found, (str, bytes)) else found, _allowed(first))
+
+
+def _allowed(first: ErrorDetails) -> str:
+    """What pydantic asks for, without its own words around it."""
+    reason = first.get("ctx", {}).get("error")
+    words = str(reason).rpartition("allowed: ")[2] if first["type"] == "value_error" else first["msg"]
+    return words.removeprefix("Input should be ")

@@ -21,11 +21,12 @@ from ibr_ref.oracle.files.folder import existing_folder, file_inside, small_file
 from ibr_ref.oracle.files.handed import Slots
 from ibr_ref.oracle.files.npy import read_array
 from ibr_ref.oracle.files.pictures import read_bytes
-from ibr_ref.oracle.files.problem import Problem, UnusableError, field_problem, shortened
+from ibr_ref.oracle.files.problem import Problem, UnusableError, field_problem
 from ibr_ref.oracle.schema.base import Model
 from ibr_ref.oracle.schema.document import Profile, known_profile
 
 _LARGEST_NOTE = 2**16
+_UNREADABLE, _README = "what cannot be read", "a file as the case's README says"
 
 
 class PortFile(Model):
@@ -63,7 +64,7 @@ def load_submission(folder: str | PathLike[str], case: Case) -> Submission:
     the case. Raises OSError where there is no folder and no archive.
     """
     path = Path(folder)
-    single = path.suffix == ".npz" and path.is_file()
+    single = path.suffix == ".npz" and os.path.isfile(path)
     root = existing_folder(path.parent if single else path)
     collector = _Collector(case)
     for name in [path.name] if single else sorted(os.listdir(root)):
@@ -170,8 +171,12 @@ def _problems(file: str, read: Callable[[], None]) -> Iterator[Problem]:
         yield error.problem
     except MemoryError:
         yield Problem(file, "what does not fit in memory", "arrays that do")
-    except Exception as error:  # bad data break decoders in any way; a port's file must never end in a traceback
-        yield Problem(file, shortened(f"what cannot be read ({error})"), "a file as the case's README says")
+    except OSError as error:
+        yield Problem(file, f"what cannot be read ({error.strerror or 'no reason given'})", "a file that can be read")
+    except ValueError as error:  # of `naming`, which starts with the path
+        yield Problem(file, str(error).partition(": found ")[2].partition(", allowed: ")[0] or _UNREADABLE, _README)
+    except Exception:  # bad data break decoders in any way; a port's file must never end in a traceback
+        yield Problem(file, _UNREADABLE, _README)
 
 
 def _array(value: Any, name: str) -> NDArray[Any]:
@@ -188,8 +193,8 @@ def _array(value: Any, name: str) -> NDArray[Any]:
             raise UnusableError(name, f"{type(value).__name__}", kinds)
     except UnusableError:
         raise
-    except Exception as error:  # of any library
-        raise UnusableError(name, f"{type(value).__name__} ({error})", kinds) from None
+    except Exception:  # of any library
+        raise UnusableError(name, f"{type(value).__name__}, which gives no array", kinds) from None
     if array.dtype.kind not in "biuf":
         raise UnusableError(name, f"an array of {array.dtype}", "booleans, integers or floats")
     return array

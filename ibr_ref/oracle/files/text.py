@@ -7,10 +7,14 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from ibr_ref import displacement, shadows, splatting
+from ibr_ref.contract import described, spelled
+from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.files.features import features
+from ibr_ref.oracle.files.fields import field_list, input_table
+from ibr_ref.oracle.referees.reads import READS
 from ibr_ref.oracle.schema import Document
-
-_METHODS = {"displacement": displacement, "splatting": splatting, "shadows": shadows}
+from ibr_ref.oracle.schema.stages import CONTRACTS
+from ibr_ref.pages import excerpt
 
 
 def json_text(value: Any, indent: str = "") -> str:
@@ -26,14 +30,14 @@ def json_text(value: Any, indent: str = "") -> str:
     return json.dumps(value, allow_nan=False, ensure_ascii=False)
 
 
+def _reads(method: str, name: str) -> str:
+    reads = READS[method]
+    return ", ".join(reads[name if name in reads else name.rpartition(".")[0]]) or "-"
+
+
 def readme(document: Document) -> str:
-    """What a port author reads first."""
-    conventions = "\n".join(f"- **{name}**: {words}" for name, words in document.conventions.items())
-    stages = "\n".join(
-        f"| {stage.name} | {stage.shape} {stage.dtype} | {stage.meaning} | {stage.nothing} |"
-        for stage in document.expected
-        if stage.kind == "result"
-    )
+    """What a port author reads first, and all that a port of this case can be written from."""
+    used = features(document)
     return f"""# {document.name}
 
 {document.about}
@@ -41,20 +45,67 @@ def readme(document: Document) -> str:
 Method: {document.method}. Kind: {document.kind}. Meant for the device profile {document.profile}.
 
 `case.json` has the scene, every parameter and all matrices; `inputs/` the arrays that it names; `expected/` what the
-reference draws. Draw the scene, write your arrays into a folder under the names of `expected/` (any of them, or
-`color.png` alone), and ask `ibr-ref check` for a verdict. A picture of floats that are all k / 255 counts as bytes.
+reference draws. This page says what they mean, and the part of the method that this case needs.
 
-## Conventions
+## Handing in
 
-{conventions}
+Draw the scene, write your arrays into a folder under the names of `expected/` (any of them, or `color.png` alone), and ask
+`ibr-ref check` for a verdict. {_HANDING_IN}
+
+## case.json
+
+{field_list(document)}
+
+## Inputs
+
+"k / 255": the file holds bytes k, and the value is k / 255, as a UNORM texture gives it. "as stored": the numbers
+themselves.
+
+| file | shape, dtype | value | meaning |
+|---|---|---|---|
+{input_table(document)}
 
 ## Expected
 
-| name | shape, dtype | meaning | where nothing is |
-|---|---|---|---|
-{stages}
+{_expected(document)}
 
-## The method
+{excerpt("conventions", used, deeper=1)}
+{excerpt(document.method, used, deeper=1)}"""
 
-{(_METHODS[document.method].__doc__ or "").strip()}
-"""
+
+_HANDING_IN = """Shapes are those of `expected`; `color` may have a fourth
+channel, which is not looked at. A picture of floats that are all k / 255 counts as bytes.
+
+Every stage is judged on your own arrays of the stages before it, so hand in as many as you have: the verdict then names the
+first stage that is wrong. A decision (a comparison in the search, a depth test, an edge) may go either way where rounding on
+the device can turn it, and nowhere else. `port.json` may declare the device, `{"profile": "vulkan"}`, one of
+NAMES, from the tightest to the loosest; without, the tightest one that explains everything is
+looked for.""".replace("NAMES", ", ".join(PROFILES))
+
+
+_JUDGED_ON = """An array is judged on those of yours that it is computed from; one that you do not hand in is made of what it
+reads in turn, and at last of the case. Normals and the nine maps, which a case hands over, you may also make yourself and go
+on with, if you hand them in. No case depends on what the APIs leave undefined, such as pow(0, 0) or normalize(0)."""
+
+
+def _expected(document: Document) -> str:
+    """The table of the results, and the names of the margins."""
+    results = [stage for stage in document.expected if stage.kind == "result"]
+    margins = [f"`{stage.name}`" for stage in document.expected if stage.kind == "margin"]
+    contract = CONTRACTS[document.method]
+    left = {stage.name: spelled(described(contract, stage.name).discarded) for stage in results}
+    more = any(left.values())
+    lines = [
+        f"| name | shape, dtype | meaning | where nothing is |{' where discarded |' if more else ''} judged on your |",
+        f"|---|---|---|---|{'---|' if more else ''}---|",
+    ]
+    for stage in results:
+        cells = f"| {stage.name} | {stage.shape} {stage.dtype} | {stage.meaning} | {stage.nothing} |"
+        lines.append(
+            cells + (f" {left[stage.name] or '-'} |" if more else "") + f" {_reads(document.method, stage.name)} |"
+        )
+    if more:
+        lines += ["", '"own": a discarded fragment or point leaves there what any other has.']
+    lines += ["", _JUDGED_ON]
+    lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
+    return "\n".join(lines)

@@ -20,6 +20,7 @@ from ibr_ref.oracle.files.text import json_text, readme
 from ibr_ref.oracle.schema.base import Inputs
 from ibr_ref.oracle.schema.document import FORMAT, Document, describe
 from ibr_ref.oracle.schema.stages import expected
+from ibr_ref.scene.checks import named, one_line
 
 LARGEST_DOCUMENT = 2**25
 """Bytes of `case.json` and of `manifest.json`, at the most."""
@@ -48,20 +49,25 @@ def _check_replaceable(path: Path, name: str, force: bool) -> None:
     except FileNotFoundError:
         return
     except OSError as error:
-        raise OSError(f"{path}: cannot be written ({error.strerror})") from None
+        raise OSError(f"{named(path)}: cannot be written ({error.strerror})") from None
     if not present:
         return
     held = _exported_name(path)
     if held is None:
-        raise FileExistsError(f"{path}: is a folder with other things in it, allowed: a new one, or an exported case")
+        raise FileExistsError(
+            f"{named(path)}: is a folder with other things in it, allowed: a new one, or an exported case"
+        )
     if force:
         return
     if held != name:
-        raise FileExistsError(f"{path}: holds the case {held!r}, allowed: a new folder, or one of {name!r} (or force)")
+        raise FileExistsError(
+            f"{named(path)}: holds the case {one_line(repr(held))}, allowed: a new folder, or one of {name!r} (or force)"
+        )
     strangers = _strangers(path)
     if strangers:
+        stranger = one_line(repr(strangers[0]))
         raise FileExistsError(
-            f"{path}: holds {strangers[0]!r}, which no export wrote; allowed: an export alone (or force)"
+            f"{named(path)}: holds {stranger}, which no export wrote; allowed: an export alone (or force)"
         )
 
 

@@ -68,7 +68,7 @@ class Fragments:
 def fragments_of(program: Any, triangles: list[tuple[int, list[Any]]], polygon: int, device: Device) -> Fragments:
     """The candidates of one polygon's triangles: faces, and corners (7,) in clip and patch space."""
     width, height = program.width, program.height
-    corners = [np.stack(vertices, axis=-1) for _, vertices in triangles]  # (7, 3)
+    corners: list[Any] = [np.stack(vertices, axis=-1) for _, vertices in triangles]  # (7, 3)
     clip = [[np.stack([c[i] for c in corners], axis=-1)] for i in (0, 1, 3)]  # (3, T): corner, triangle
     w = clip[2][0]
     x = program.window_x(program.do.divide(clip[0][0], w))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from ibr_ref.oracle.judgement import Referee
 
 
+@cache
 def referee(method: str) -> Referee:
-    """The judge of a method."""
+    """The judge of a method: one, because it keeps what follows from the last case and device."""
     if method == "displacement":
         from ibr_ref.oracle.referees.displacement import DisplacementReferee
 

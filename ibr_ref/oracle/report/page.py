@@ -13,10 +13,10 @@ import numpy as np
 from jinja2 import Environment, StrictUndefined
 from numpy.typing import NDArray
 
-from ibr_ref.io.files import atomic
+from ibr_ref.io.outputs import atomic
 from ibr_ref.oracle.examination import Examination
 from ibr_ref.oracle.report.layers import blamed, layers, planes, stage_layer
-from ibr_ref.oracle.words import words
+from ibr_ref.oracle.words import MOST_LINES, words
 
 MOST_BYTES = 96 * 2**20
 """Of the inspector's numbers before they are packed: what a browser holds with ease. Stages beyond it are left out."""
@@ -38,7 +38,8 @@ def page(examination: Examination) -> str:
     height, width = examination.case.frame.color.shape[:2]
     return environment.from_string(_asset("page.html")).render(
         verdict=verdict,
-        words=words(verdict, trace=False),  # which has a table of its own
+        words=words(verdict, trace=False),  # which have tables of their own
+        most_lines=MOST_LINES,
         about=examination.case.about,
         layers=pictures,
         compared=len(pictures) > 1,
@@ -57,11 +58,12 @@ def _asset(name: str) -> str:
 
 
 def _start(examination: Examination) -> tuple[int, int]:
-    """The pixel (x, y) that the inspector shows at first: the witness, if that is a pixel, else the middle."""
+    """The pixel (x, y) that the inspector shows at first: the first witness that is one, else the middle."""
     height, width = examination.case.frame.color.shape[:2]
-    witness = examination.verdict.witness
-    if witness is not None and witness.element == "pixel" and len(witness.index) == 2:
-        return witness.index[1], witness.index[0]
+    for witness in examination.verdict.witnesses:
+        if witness.element == "pixel":  # of several light samples the sample comes first
+            row, column = witness.index[-2:]
+            return column, row
     return width // 2, height // 2
 
 

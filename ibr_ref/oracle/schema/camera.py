@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ibr_ref.oracle.schema.base import Matrix3, Matrix4, Model, Vector2, Vector3, Vector4, numbers
-from ibr_ref.scene import Camera
-from ibr_ref.scene.projection import MOST_PIXELS
+from ibr_ref.scene import Camera, checks
+from ibr_ref.scene.projection import MOST_PIXELS, depth_row
 
 Side = Annotated[int, Field(ge=1, le=MOST_PIXELS)]
 
@@ -53,8 +53,15 @@ class CameraFile(Model):
     """What the matrices were made of, where that is known; reference files keep it."""
 
 
+_PLANES_ROUNDING, _EYE_ROUNDING = 1e-15, 1e-12
+"""Relative, by which near and far may differ from clip_from_view, and the eye from view_from_world."""
+
+
 def describe_camera(camera: Camera) -> CameraFile:
-    """The camera as a document."""
+    """The camera as a document. Raises ValueError for one that contradicts itself."""
+    found = contradiction(camera)
+    if found is not None:
+        raise checks.reject(f"camera.{found[0]}", *found[1:])
     view, clip = camera.view_from_world, camera.clip_from_view
     clip_gl = gl_clip(clip)
     afx = camera.afx
@@ -92,6 +99,31 @@ def build_camera(file: CameraFile) -> Camera:
         width=file.width,
         height=file.height,
     )
+
+
+def contradiction(camera: Camera) -> tuple[str, Any, str] | None:
+    """Which of near, far and eye is not what the matrices say: the field, what was found, what is allowed.
+
+    near and far give the row of z of clip_from_view, within 1e-15 of its entries; the eye is where view_from_world has it,
+    within 1e-12 of the numbers that it is made of.
+    """
+    clip, (c, d) = camera.clip_from_view, camera.clip_from_view[2, 2:].tolist()
+    row = np.array([0.0, 0.0, *depth_row(camera.near, camera.far, camera.perspective)])
+    if not (np.abs(clip[2] - row) <= _PLANES_ROUNDING * np.abs(row)).all():
+        with np.errstate(all="ignore"):
+            near, far = (np.float64(d) / c, np.float64(d) / (c + camera.perspective)) if d else (np.nan, np.nan)
+            far = far if camera.perspective else near - np.float64(1.0) / c
+        field, own, of_matrix = ("near", camera.near, near) if abs(camera.near - near) > 1e-9 * abs(near) else (
+            "far", camera.far, far)  # fmt: skip
+        return field, own, f"{of_matrix:.12g}, which clip_from_view[2] = {clip[2].tolist()} makes of it"
+    inverse, back = camera.world_from_view, camera.view_from_world[:3, 3]
+    if camera.perspective:
+        eye, scale = inverse[:3, 3], np.abs(inverse[:3, :3]) @ np.abs(back)
+    else:
+        eye, scale = inverse[:3, 2] / np.sqrt((inverse[:3, 2] ** 2).sum()), np.ones(3)
+    if not (np.abs(camera.eye[:3] - eye) <= _EYE_ROUNDING * scale).all():
+        return "eye", camera.eye.tolist(), f"{[*eye.tolist(), camera.eye[3]]}, which view_from_world makes of it"
+    return None
 
 
 def gl_clip(clip: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -24,7 +24,7 @@ class LightFile(Model):
     ambient: Coefficient
     diffuse: Coefficient
     specular: Coefficient
-    exponent: Annotated[int, Field(ge=0, le=2**20)]
+    exponent: Annotated[int, Field(ge=1, le=2**20)]
     """Of the specular term, raised by repeated squaring, lowest bit first."""
 
 

@@ -11,6 +11,7 @@ from ibr_ref import shadows
 from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Matrix2x3, Model, Stored, Vector2, Vector3, numbers, values
 from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
 from ibr_ref.scene import AreaLight, Mesh, checks
+from ibr_ref.shadows.prepared import depths_of
 from ibr_ref.shadows.samples import samples_of, seen_offset
 
 
@@ -33,6 +34,8 @@ class ShadowsParams(Model):
     bias: float
     """Of depths, in units of window depth."""
     policy: Literal["dissolve", "nearest"]
+    interpolation: Literal["linear", "projective"] = "linear"
+    """Pace between two maps: even, or by the caster's depths, `scene.maps.depths`."""
     light_samples: Literal[1, 5, 9] | tuple[Vector3, ...]
     """1, 5 or 9, or world positions; `scene.light_samples` lists them all."""
     accumulation: Literal["float", "unorm8"]
@@ -88,6 +91,8 @@ class MapsFile(Model):
     """k."""
     source: str = Field(pattern="^[0-9a-f]{64}$")
     """The reference's digest of caster, axes and light."""
+    depths: ArrayFile | None = None
+    """interpolation = "projective": of the middle of the caster's box along the light's view axis, [j, i] as the maps."""
 
 
 class ShadowsScene(Model):
@@ -148,7 +153,7 @@ def describe_scene(scene: shadows.Scene, params: shadows.Params, maps: Any, inpu
         offset_range=numbers(scene.offset_range),
         ambient=scene.ambient,
         background=numbers(scene.background),
-        maps=_maps(params, maps, inputs),
+        maps=_maps(scene, params, maps, inputs),
     )
 
 
@@ -176,7 +181,7 @@ def _mesh(stem: str, mesh: Mesh, inputs: Inputs) -> MeshFile:
     )
 
 
-def _maps(params: shadows.Params, maps: Any, inputs: Inputs) -> MapsFile | None:
+def _maps(scene: shadows.Scene, params: shadows.Params, maps: Any, inputs: Inputs) -> MapsFile | None:
     if params.method != "warp":
         if maps is not None:
             raise checks.reject('inputs["maps"]', type(maps).__name__, f"none with method={params.method!r}")
@@ -185,6 +190,8 @@ def _maps(params: shadows.Params, maps: Any, inputs: Inputs) -> MapsFile | None:
         raise checks.reject('inputs["maps"]', type(maps).__name__, 'shadows.Maps with method="warp"')
     texels = "counts of covered samples, 0 to k^2: coverage is count / k^2"
     controls = "[j, i, row, column] = (u, v) in [0, 1]^2 of map [j, i]"
+    depths = depths_of(scene, params, maps.positions)
+    meaning = "[j, i] = depth of the middle of the caster's box along the light's view axis in map [j, i]"
     content: Literal["mask", "depth"] = "mask" if maps.content == "mask" else "depth"
     return MapsFile(
         positions=inputs.array(
@@ -195,6 +202,7 @@ def _maps(params: shadows.Params, maps: Any, inputs: Inputs) -> MapsFile | None:
         content=content,
         samples=maps.samples,
         source=maps.source,
+        depths=None if depths is None else inputs.array("maps.depths", depths, meaning),
     )
 
 

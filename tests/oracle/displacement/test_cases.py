@@ -11,7 +11,7 @@ from ibr_ref.oracle.device import PROFILES
 from tests.oracle.displacement.drawn import REFEREE, SMALL, case, image, reference, wrong
 
 MOST_UNDECIDED = 0.005
-"""Of a case's pixels under its own profile (oracle.md, "How a pixel is judged")."""
+"""Of a case's pixels under its own profile."""
 
 
 def test_every_kind_and_the_profiles_are_there() -> None:

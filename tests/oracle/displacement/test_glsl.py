@@ -12,7 +12,7 @@ from tests.oracle.displacement.drawn import REFEREE, SMALL, case, wrong
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 
-from tests.ports.displacement import Port  # noqa: E402
+from ibr_ref.ports.glsl.displacement import Port  # noqa: E402
 
 COVERED = (
     "box",

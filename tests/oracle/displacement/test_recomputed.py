@@ -10,7 +10,6 @@ from ibr_ref.oracle.referees.displacement.hits import hits_of, lighted, points_o
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.picture import picture_of
 from ibr_ref.oracle.referees.displacement.replay import Port, light_input, march_input, shade_input
-from ibr_ref.oracle.referees.displacement.stages import vertices
 from tests.oracle.displacement.drawn import SMALL, case, reference
 
 ROUNDING = 1e-12
@@ -31,7 +30,7 @@ def port(request: pytest.FixtureRequest) -> Port:
 
 
 def test_corners(port: Port) -> None:
-    legal = vertices(port.model)
+    legal = port.model.vertices
     for name in ("vertex.clip", "vertex.patch"):
         assert near(legal[name].value, port.handed[name])
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -70,8 +72,7 @@ def swapped(name: str) -> tuple[Arrays, np.ndarray]:
     what = case(name)
     alone = []
     for polygon in what.scene.polygons:
-        scene = type(what.scene)(**{**vars(what.scene), "polygons": [polygon]})
-        alone.append(type(what)(**{**vars(what), "scene": scene}).draw(stages=False))
+        alone.append(replace(what, scene=replace(what.scene, polygons=[polygon])).draw(stages=False))
     first, second = alone
     both = (first.depth < 1.0) & (second.depth < 1.0) & (np.abs(first.depth - second.depth) < 0.01)
     farther = np.where(first.depth > second.depth, 0, 1)

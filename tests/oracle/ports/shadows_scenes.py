@@ -151,6 +151,13 @@ def low_light() -> Scene:
     )
 
 
+def paced() -> Case:
+    """A light aside and near, the projective pace."""
+    lamp = light(position=(-1.6, -1.3, 1.9), target=(0.0, 0.0, 0.0), vertical_fov=75.0, near=0.3)
+    around = scene(light=lamp, offset_range=((-0.6, 0.7), (-0.7, 0.5)), offset=(0.3, -0.35))
+    return case(around, params(interpolation="projective", light_samples=5, map_samples=2))
+
+
 def behind() -> Case:
     """Masks, a ceiling behind the light."""
     return case(low_light(), params())
@@ -199,6 +206,7 @@ CASES: dict[str, Callable[[], Case]] = {
         oblique,
         beside,
         border,
+        paced,
         behind,
         far,
         direct,
@@ -218,6 +226,9 @@ ELSEWHERE = {
     "maps-depth-half-floats": "deep",
     "maps-linear-depth": "deep",
     "maps-unit-axes": "oblique",
+    "warp-pace-even": "paced",
+    "warp-pace-reversed": "paced",
+    "warp-pace-of-the-upper-row": "paced",
     "warp-farther-image": "nearest",
     "warp-other-diagonal": "bent",
     "warp-last-column-left-out": "beside",

@@ -13,8 +13,8 @@ from tests.oracle.shadows.judged import SMALL, Arrays, case, image, stages
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 
-from tests.ports.described import described  # noqa: E402
-from tests.ports.shadows import Port  # noqa: E402
+from ibr_ref.ports.described import described  # noqa: E402
+from ibr_ref.ports.glsl.shadows import Port  # noqa: E402
 
 
 @pytest.fixture(scope="module")

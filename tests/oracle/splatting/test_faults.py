@@ -7,7 +7,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.ports.splatting import MUTANTS, Port
+from ibr_ref.oracle.referees.splatting.normals import Codes, surface
 from tests.oracle.judgements import complaints, first_wrong, picture
 from tests.oracle.splatting.judged import REFEREE, Arrays, case, drawn, image, reference, stages
 
@@ -147,6 +150,29 @@ def test_any_subset_can_be_handed_in(kept: tuple[str, ...]) -> None:
         judged = stages(name, {array: arrays[array] for array in kept})
         assert judged
         assert complaints(judged) == []
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_neighbours_of_one_depth_tie_on_every_device(profile: str) -> None:
+    """Their distances are made of the same numbers: whoever takes the left one is wrong under the loosest profile too."""
+    (mutant,) = (m for m in MUTANTS if m.name == "ties-to-the-left")
+    judged = stages("splatting-terraces", drawn("splatting-terraces", port=mutant.port), profile)
+    assert first_wrong(judged) == "normals"
+
+
+def test_a_port_may_light_with_normals_of_its_own() -> None:
+    """Of a code on the edge between two it has the other one: legal, and its points and its picture are right with it."""
+    described = case(LAMP)
+    legal = [Codes(surface(image, PROFILES["ieee32"])) for image in described.scene.images]
+    own = [codes.copy() for codes in described.inputs["normals"]]
+    for codes, allowed in zip(own, legal, strict=True):
+        for pixels, low, high in allowed.outcomes:
+            codes[tuple(pixels.T)] = np.where(low < high, low + high - codes[tuple(pixels.T)], codes[tuple(pixels.T)])
+    page, rects = copied(drawn(LAMP))["atlas.normal"], drawn(LAMP)["atlas.rects"]
+    for (number, x, y, width, height), codes in zip(rects.tolist(), own, strict=True):
+        page[number][y : y + height, x : x + width] = codes
+    arrays = Port(described.scene, described.params, Policy(), {"normals": own}).render() | {"atlas.normal": page}
+    assert complaints([*stages(LAMP, arrays), REFEREE.judge_image(described, PROFILES["ieee32"], arrays)]) == []
 
 
 def test_other_kinds_of_numbers_are_the_same_numbers() -> None:

@@ -13,9 +13,9 @@ from tests.oracle.splatting.judged import SMALL, Arrays, case, image, stages
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 
-from tests.ports.described import described  # noqa: E402
-from tests.ports.gl import Frame  # noqa: E402
-from tests.ports.splatting import Port  # noqa: E402
+from ibr_ref.ports.described import described  # noqa: E402
+from ibr_ref.ports.glsl.gl import Frame  # noqa: E402
+from ibr_ref.ports.glsl.splatting import Port  # noqa: E402
 
 
 @pytest.fixture(scope="module")

@@ -5,11 +5,9 @@ from __future__ import annotations
 from functools import reduce
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.faults.displacement.bugs import Bugs
-from ibr_ref.oracle.programs.displacement.case import Bools, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.port import Port
 
 LIGHT = Bugs("shade")
@@ -23,6 +21,14 @@ class _Ambient(Port):
 
     def ambient(self) -> Floats:
         return super().ambient() * 1.02
+
+
+@LIGHT.add("ambient as a byte", small=True)
+class _AmbientByte(Port):
+    """Ambient is rounded to a multiple of 1/255."""
+
+    def ambient(self) -> Floats:
+        return np.rint(super().ambient() * 255.0) / 255.0
 
 
 @LIGHT.add("diffuse off by 1 %", small=True)
@@ -198,6 +204,14 @@ class _LastSampleMissing(Port):
         return range(1, self.params.shadow_steps)
 
 
+@LIGHT.add("one shadow sample more", small=True)
+class _OneSampleMore(Port):
+    """j to S + 1: the last sample lies at the end of the stretch."""
+
+    def shadow_samples(self) -> range:
+        return range(1, self.params.shadow_steps + 2)
+
+
 @LIGHT.add("first shadow sample left out", small=True)
 class _FirstSampleMissing(Port):
     """j from 2."""
@@ -210,7 +224,7 @@ class _FirstSampleMissing(Port):
 class _NegativeBias(Port):
     """h - bias < H."""
 
-    def shadow_bias(self, patch: Patch) -> ArrayLike:
+    def shadow_bias(self, patch: Patch) -> Floats:
         return -super().shadow_bias(patch)
 
 
@@ -218,7 +232,7 @@ class _NegativeBias(Port):
 class _WorldBias(Port):
     """The bias is divided by s."""
 
-    def shadow_bias(self, patch: Patch) -> ArrayLike:
+    def shadow_bias(self, patch: Patch) -> Floats:
         return self.do.divide(super().shadow_bias(patch), patch.scale)
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.faults.displacement.bugs import Bugs
-from ibr_ref.oracle.programs.displacement.case import Bools, Ints, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.port import Port
 
@@ -57,6 +56,14 @@ class _AnyDirection(Port):
 
     def goes_up(self, way: Vector) -> Bools:
         return way[2] != 0.0
+
+
+@MARCH.add("grazing rays discarded", small=True)
+class _Grazing(Port):
+    """v_h > 0.1, against a division by numbers near zero."""
+
+    def goes_up(self, way: Vector) -> Bools:
+        return np.asarray(way[2] > 0.1) if self.params.interval == "paper" else super().goes_up(way)
 
 
 @MARCH.add("search from behind the eye")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.faults.displacement.bugs import Bugs
-from ibr_ref.oracle.programs.displacement.case import Bools, Ints, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.port import Port
 
@@ -151,6 +150,14 @@ class _SteepBothWays(Port):
 
     def is_steep(self, patch: Patch, hit: Vector, before: Floats, linear: Ints) -> Bools:
         return super().is_steep(patch, [np.abs(hit[2] - before)] * 3, np.zeros(before.shape), linear)
+
+
+@SEARCH.add("delta on a - b")
+class _SteepBackwards(Port):
+    """a - b > delta: the height before minus the hit's, steep where the map was higher before."""
+
+    def is_steep(self, patch: Patch, hit: Vector, before: Floats, linear: Ints) -> Bools:
+        return super().is_steep(patch, [before] * 3, hit[2], linear)
 
 
 @SEARCH.add("delta in world units")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.faults.displacement.bugs import Bugs
-from ibr_ref.oracle.programs.displacement.case import Bools, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.port import Port
 
 SHADE = Bugs("shade")

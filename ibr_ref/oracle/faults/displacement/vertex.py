@@ -6,9 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.faults.displacement.bugs import Bugs
-from ibr_ref.oracle.programs.displacement.case import Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.oracle.programs.displacement.vertex import V1, Quad
 

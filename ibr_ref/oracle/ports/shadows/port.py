@@ -48,7 +48,11 @@ class Port(Picture, Warp, Project, Resolve):
         positions, controls, prepared = self.positions(), self.controls(), self.images()
         arrays: Arrays = {"maps.positions": positions, "maps.image": self.nine_maps(positions), "controls": controls}
         warps = [self.warped(place, controls, prepared) for place in self.places]
+        if self.projective:
+            arrays["maps.depths"] = self.caster_depths()
         for name in Warped.__dataclass_fields__:
+            if name == "shares" and not self.projective:
+                continue
             arrays[f"warp.{name}"] = self._samples([getattr(warp, name) for warp in warps])
         return arrays, [warp.image for warp in warps]
 

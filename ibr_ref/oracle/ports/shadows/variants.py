@@ -134,6 +134,19 @@ class DirectFromCentre(Port):
         return self.caster_map(raster, self.place_of_object(place), self.light_view(self.centre))
 
 
+class OwnMaps(Port):
+    """The port warps nine maps that it has rendered itself, not those that the case hands over."""
+
+    def lines(self) -> list[Floats]:
+        """Of its own positions."""
+        positions = self.positions()
+        return [positions[0, :, 0], positions[:, 0, 1]]
+
+    def images(self) -> Floats:
+        """Its own."""
+        return self.nine_maps(self.positions())
+
+
 _VULKAN = Policy(reciprocal=True, weight_bits=8, subpixel_rounding="up", depth_bits=24)
 _GL = Policy(
     fused=True, reciprocal=True, jitter=2, seed=4, weight_bits=8, weight_rounding="down", subpixel_rounding="down",
@@ -157,6 +170,8 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("mean of samples", Policy(), "ieee32", MeanOfSamples),
     Variant("shade by sum", Policy(fused=True), "ieee32", ShadeBySum),
     Variant("direct from the centre", Policy(), "ieee32", DirectFromCentre),
+    Variant("own maps", Policy(), "ieee32", OwnMaps),
+    Variant("own maps, subpixels up", Policy(subpixel_rounding="up"), "vulkan", OwnMaps),
     Variant("truncated", Policy(truncated=True), "d3d11"),
     Variant("truncated, fused, 8-bit weights", Policy(truncated=True, fused=True, weight_bits=8), "d3d11"),
     Variant("quotients off by 2 ULP", Policy(loose=2, seed=1), "vulkan"),

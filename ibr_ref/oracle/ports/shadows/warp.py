@@ -18,6 +18,7 @@ class Warped:
 
     cell: NDArray[np.int32]
     fraction: Floats
+    shares: Floats
     row_grids: Floats
     rows: Floats
     grid: Floats
@@ -64,29 +65,60 @@ class Warp(Lights):
         i, j = cell.tolist()
         return [array[j, i], array[j, i + 1], array[j + 1, i], array[j + 1, i + 1]]
 
-    def row_grid(self, first: Floats, second: Floats, fraction: Floats) -> Floats:
-        """(R, C, 2) between the two grids of a row of the cell."""
-        return self.ops.lerp(first, second, fraction[0])
+    @property
+    def projective(self) -> bool:
+        """Whether maps are passed through at the pace of perspective."""
+        return bool(self.params.interpolation == "projective")
 
-    def final_grid(self, top: Floats, bottom: Floats, fraction: Floats) -> Floats:
+    def caster_depths(self) -> Floats:
+        """(3, 3) of the middle of the caster's box along the light's view axis, in the maps that the case gives."""
+        vertices = self.ops.number(self.scene.caster.vertices)
+        middle = self.ops.multiply(self.ops.add(vertices.min(axis=0), vertices.max(axis=0)), 0.5)
+        backwards, depths = self.light_view(self.centre)[2], np.empty((3, 3))
+        for j, i in np.ndindex(3, 3):
+            offset = self.ops.number(self.inputs["maps"].positions[j, i])
+            at = self.ops.sum([middle, *(self.ops.multiply(offset[k], self.axes[k]) for k in range(2))])
+            depths[j, i] = -self.ops.dot([*at, 1.0], list(backwards))
+        return depths
+
+    def paced(self, fraction: Floats, w0: Floats, w1: Floats) -> Floats:
+        """Of the way in the map, after a fraction of the way between two depths."""
+        gone = self.ops.multiply(fraction, w1)
+        return self.ops.divide(gone, self.ops.add(self.ops.multiply(self.ops.subtract(1.0, fraction), w0), gone))
+
+    def shares(self, cell: NDArray[np.int32], fraction: Floats) -> Floats:
+        """(3,) of the upper row, of the lower row, and between the two."""
+        s, t = fraction
+        if not self.projective:
+            return np.array([s, s, t])
+        w = self.corners(self.caster_depths(), cell)
+        between = [self.ops.lerp(w[0], w[1], s), self.ops.lerp(w[2], w[3], s)]
+        return np.array([self.paced(s, w[0], w[1]), self.paced(s, w[2], w[3]), self.paced(t, *between)])
+
+    def row_grid(self, first: Floats, second: Floats, share: Floats) -> Floats:
+        """(R, C, 2) between the two grids of a row of the cell."""
+        return self.ops.lerp(first, second, share)
+
+    def final_grid(self, top: Floats, bottom: Floats, share: Floats) -> Floats:
         """(R, C, 2) between the two grids of the rows."""
-        return self.ops.lerp(top, bottom, fraction[1])
+        return self.ops.lerp(top, bottom, share)
 
     def warped(self, place: Floats, controls: Floats, images: Floats) -> Warped:
         """The map for a sample of the light, six warps, or three."""
         cell, fraction = self.find(self.place_of_object(place))
         grids, maps = self.corners(controls, cell), self.corners(images, cell)
+        shares = self.shares(cell, fraction)
         between, rows = [], []
-        for k in (0, 2):
-            between.append(self.row_grid(grids[k], grids[k + 1], fraction))
-            rows.append(self.between(maps[k : k + 2], grids[k : k + 2], between[-1], fraction[0]))
-        grid = self.final_grid(between[0], between[1], fraction)
-        image = self.finished(rows, between, grid, fraction)
-        return Warped(cell, fraction, np.stack(between), np.stack(rows), grid, image)
+        for k, share in ((0, shares[0]), (2, shares[1])):
+            between.append(self.row_grid(grids[k], grids[k + 1], share))
+            rows.append(self.between(maps[k : k + 2], grids[k : k + 2], between[-1], share))
+        grid = self.final_grid(between[0], between[1], shares[2])
+        image = self.finished(rows, between, grid, shares)
+        return Warped(cell, fraction, shares, np.stack(between), np.stack(rows), grid, image)
 
-    def finished(self, rows: list[Floats], grids: list[Floats], grid: Floats, fraction: Floats) -> Floats:
+    def finished(self, rows: list[Floats], grids: list[Floats], grid: Floats, shares: Floats) -> Floats:
         """(S, S) the result, between the two rows."""
-        return self.between(rows, grids, grid, fraction[1])
+        return self.between(rows, grids, grid, shares[2])
 
     def between(self, images: list[Floats], grids: list[Floats], grid: Floats, fraction: Floats) -> Floats:
         """(S, S) of two images, warped from their grids to one that lies between them."""

@@ -81,6 +81,14 @@ class WholeCodes(Vertex):
         return self.alu.subtract(code, 128.0)
 
 
+class FloatCodes(Vertex):
+    """Codes are fetched as k / 255 and multiplied by 255."""
+
+    def decode(self, code: Floats) -> Floats:
+        fetched = self.alu.divide(code, 255.0)
+        return self.alu.divide(self.alu.subtract(self.alu.multiply(fetched, 255.0), 128.0), 127.0)
+
+
 class Quads(Raster):
     """Splats are two triangles, whose corners are snapped, not the centre: the way where points have one size."""
 

@@ -5,6 +5,8 @@ Splatting filters nothing and interpolates nothing: 8-bit weights and varyings o
 
 from __future__ import annotations
 
+from typing import Any
+
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.ports.splatting import orders
@@ -16,6 +18,14 @@ class AllAtOnce(Port):
 
     vertex = type("AllOrders", (orders.ClipFromWorld, orders.Viewport, orders.HornersLaw, orders.CosinesOnly), {})
     raster = orders.Quads
+
+
+class OwnNormals(Port):
+    """Points are lit with the port's own normals, not with those that the case hands over."""
+
+    def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
+        """Without the case's inputs."""
+        super().__init__(scene, params, policy, {})
 
 
 _FLOAT32 = Policy()
@@ -34,6 +44,10 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("horners-law", _FLOAT32, "ieee32", with_stage(orders.HornersLaw)),
     Variant("cosines-only", _FLOAT32, "ieee32", with_stage(orders.CosinesOnly)),
     Variant("whole-codes", _FLOAT32, "ieee32", with_stage(orders.WholeCodes)),
+    Variant("pow", Policy(intrinsic_power=True), "ieee32"),
+    Variant("pow-loose", Policy(intrinsic_power=True, loose=2, seed=3), "vulkan"),
+    Variant("own-normals", _FLOAT32, "ieee32", OwnNormals),
+    Variant("normals-as-floats", _FLOAT32, "ieee32", with_stage(orders.FloatCodes)),
     Variant("truncating", Policy(truncated=True), "d3d11"),
     Variant("reciprocals", Policy(reciprocal=True), "vulkan"),
     Variant("loose-quotients-1", Policy(loose=2, seed=1), "vulkan"),

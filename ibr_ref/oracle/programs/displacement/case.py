@@ -7,15 +7,17 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats, Policy
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.scene.checks import reject
 
-Vector = Sequence[Floats]
-"""Components of one vector, or of many: each an array of any one shape."""
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+Floats = Any
+"""Numbers of the arithmetic that the program runs on: arrays of a device's, or `Number`s with bounds."""
+Vector = Any
+"""Components of one vector, or of many: each numbers of any one shape."""
+Ints = Any
+Bools = Any
+"""Decided, or a `Truth`."""
 PROGRAMS = __name__.rpartition(".")[0]
 
 
@@ -76,7 +78,7 @@ class Case:
         """Whether no fault changes these methods: only then does another legal form stand beside what they compute."""
         return all(getattr(type(self), name).__module__.startswith(PROGRAMS) for name in names)
 
-    def upload(self, vector: ArrayLike) -> Vector:
+    def upload(self, vector: Floats) -> Vector:
         """A vector in a uniform buffer."""
         return list(self.do.number(vector))
 
@@ -87,15 +89,15 @@ class Case:
             for i, j in ((1, 2), (2, 0), (0, 1))
         ]
 
-    def multiply_add(self, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Floats:
+    def multiply_add(self, a: Floats, b: Floats, c: Floats) -> Floats:
         """A b + c."""
         return self.do.dot([c, a], [1.0, b])
 
-    def scaled(self, a: Vector, factor: ArrayLike) -> Vector:
+    def scaled(self, a: Vector, factor: Floats) -> Vector:
         """A vector times a number."""
         return [self.do.multiply(x, factor) for x in a]
 
-    def combined(self, vectors: Sequence[Vector], factors: Sequence[ArrayLike]) -> Vector:
+    def combined(self, vectors: Sequence[Vector], factors: Sequence[Floats]) -> Vector:
         """The sum of vectors times numbers."""
         return [self.do.dot([vector[k] for vector in vectors], factors) for k in range(len(vectors[0]))]
 

@@ -7,8 +7,7 @@ from functools import reduce
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
-from ibr_ref.oracle.programs.displacement.case import Bools, Ints, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.raster import Fragments
 from ibr_ref.oracle.programs.displacement.texture import FILTER, TextureUnit
 from ibr_ref.oracle.programs.displacement.vertex import BASE, Vertex

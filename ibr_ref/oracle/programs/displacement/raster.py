@@ -8,8 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
-from ibr_ref.oracle.programs.displacement.case import Bools, Case, Ints, Vector
+from ibr_ref.oracle.programs.displacement.case import Bools, Case, Floats, Ints, Vector
 from ibr_ref.oracle.programs.displacement.vertex import Quad
 
 

@@ -9,27 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.arithmetic.device import Floats
-from ibr_ref.oracle.programs.displacement.case import Bools, Ints, Patch, Vector
+from ibr_ref.displacement.contract import STAGES
+from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Hits
 from ibr_ref.oracle.programs.displacement.raster import Fragments
 from ibr_ref.oracle.programs.displacement.shade import Shaded
 from ibr_ref.oracle.programs.displacement.vertex import Vertex
-
-NOTHING: dict[str, Any] = {
-    "raster.face": np.int32(-1),
-    "raster.patch_id": np.int32(-1),
-    "raster.patch": np.nan,
-    "march.linear_index": np.int32(-1),
-    "march.hit_index": np.int32(-1),
-    "march.hit": np.nan,
-    "march.height_before": np.nan,
-    "march.steep": np.False_,
-    "shade.albedo": np.nan,
-    "shade.normal": np.nan,
-    "shade.lit": np.False_,
-}
-"""Stage arrays of the picture's size, and their values where nothing covers the pixel."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +41,7 @@ class Resolve(Vertex):
         chosen = np.where(shown >= 0, shown, first)
         size = (self.height, self.width)
         arrays = {
-            name: self.gathered(values, chosen, NOTHING[name]).reshape(*size, *values.shape[1:])
+            name: self.gathered(values, chosen, STAGES[name].blank).reshape(*size, *values.shape[1:])
             for name, values in self.stage_values(drawn).items()
         }
         colors = np.concatenate([np.stack(d.shaded.color, axis=-1) for d in drawn])
@@ -65,7 +50,7 @@ class Resolve(Vertex):
 
     def stage_values(self, drawn: Sequence[Drawn]) -> dict[str, NDArray[Any]]:
         """What the fragments carry, by the names of the contract."""
-        values: dict[str, list[NDArray[Any]]] = {name: [] for name in NOTHING}
+        values: dict[str, list[NDArray[Any]]] = {}
         for d in drawn:
             count = len(d.fragments.face)
             for name, array in (
@@ -81,7 +66,7 @@ class Resolve(Vertex):
                 ("shade.normal", self.stacked(d.shaded.normal)),
                 ("shade.lit", d.shaded.lit),
             ):
-                values[name].append(array)
+                values.setdefault(name, []).append(array)
         return {name: np.concatenate(parts) for name, parts in values.items()}
 
     def stacked(self, vector: Vector) -> Floats:

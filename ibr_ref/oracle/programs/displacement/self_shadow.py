@@ -5,10 +5,8 @@ from __future__ import annotations
 from functools import reduce
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.arithmetic.device import Floats
-from ibr_ref.oracle.programs.displacement.case import Bools, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import March
 
 
@@ -61,6 +59,6 @@ class SelfShadow(March):
         """Whether a sample is below the surface."""
         return self.do.add(h, self.shadow_bias(patch)) < height
 
-    def shadow_bias(self, patch: Patch) -> ArrayLike:
+    def shadow_bias(self, patch: Patch) -> Floats:
         """In units of h."""
         return self.do.number(self.params.shadow_bias)

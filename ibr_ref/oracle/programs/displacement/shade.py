@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
-from ibr_ref.oracle.programs.displacement.case import Bools, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Hits
 from ibr_ref.oracle.programs.displacement.self_shadow import SelfShadow
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
-from ibr_ref.oracle.programs.displacement.case import Case, Ints, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Case, Floats, Ints, Patch, Vector
 
 FILTER = ("fetch", "texel_and_weight", "texel_position", "wrapped", "bilinear", "lerp")
 """The methods that a fetch is made of."""

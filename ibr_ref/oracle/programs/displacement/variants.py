@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats, Policy
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.faults.kinds import Variant
-from ibr_ref.oracle.programs.displacement.case import Ints, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Floats, Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.port import Port
 
@@ -125,6 +125,8 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("varyings by planes", Policy(), "ieee32", _Planes),
     Variant("normal of crossed tangents", Policy(), "ieee32", _CrossedTangents),
     Variant("reflection without a vector", Policy(), "ieee32", _NoReflectedVector),
+    Variant("pow", Policy(intrinsic_power=True), "ieee32"),
+    Variant("pow, loose", Policy(intrinsic_power=True, loose=2, seed=3), "vulkan"),
     Variant("patch space from the host", Policy(), "ieee32", _HostPatchSpace),
     Variant("reciprocal division", Policy(reciprocal=True), "vulkan"),
     Variant("quotients off by 2 ULP, seed 1", Policy(loose=2, seed=1), "vulkan"),

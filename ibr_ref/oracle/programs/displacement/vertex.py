@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
-from ibr_ref.oracle.programs.displacement.case import Case, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Case, Floats, Patch, Vector
 
 BASE, U0, U1, V0, V1, TOP = range(6)
 

@@ -170,12 +170,14 @@ def judge_image(case: Case, device: Device, handed: Handed, kind: type[Program] 
     """Colour, and depth where it is handed in: one legal outcome must agree with both."""
     picture = picture_of(case, device, kind)
     search = searched(picture, Shown.of(picture, handed))
-    blame = np.where(search.accepted, -1, np.where(search.bright & ("depth" in handed), 1, 0))
+    names = ("depth", "color") if "depth" in handed else ("color",)
+    # Depth is what disagrees where an outcome has the colour.
+    blame = np.where(search.accepted, -1, np.where(search.bright | ("depth" not in handed), 0, len(names) - 1))
     shape = case.frame.depth.shape
     return Judgement(
         stage="image",
         element="pixel",
-        arrays=("color", "depth") if "depth" in handed else ("color",),
+        arrays=names,
         wrong=~search.accepted.reshape(shape),
         undecided=(undecided(case, picture) | search.undecided).reshape(shape),
         width=hull_width(picture).reshape(shape),

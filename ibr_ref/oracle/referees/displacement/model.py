@@ -60,6 +60,17 @@ class Model:
         return [self.program.quads(patch) for patch in self.patches]
 
     @cached_property
+    def vertices(self) -> dict[str, Number]:
+        """The legal corners of all faces, (V, 4) and (V, 3)."""
+        machine, program = self.machine, self.program
+        clip = [np.zeros((0, 4)), *(machine.of(quad.clip) for quads in self.quads for quad in quads)]
+        patch = [np.zeros((0, 3))]
+        for each, quads in zip(self.patches, self.quads, strict=True):
+            patch += [machine.of(program.written_corners(each, quad)) for quad in quads]
+        pairs = (("vertex.clip", clip), ("vertex.patch", patch))
+        return {name: np.concatenate([machine.of(x) for x in parts]) for name, parts in pairs}  # type: ignore[arg-type]
+
+    @cached_property
     def raster(self) -> Raster:
         """Of the program's own vertices."""
         return self.rasterized(self.quads)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
+from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.programs.displacement.vertex import Quad
 from ibr_ref.oracle.referees.displacement.hits import points_from, points_of, redepthed
@@ -21,12 +22,13 @@ from ibr_ref.oracle.referees.displacement.picture import Picture, picture_of
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades, Vector
 
 ARRAYS = {
-    "vertex": ("vertex.clip", "vertex.patch"),
+    "vertex": ("vertex.patch", "vertex.clip"),
     "raster": ("raster.face", "raster.patch_id", "raster.patch"),
     "march": ("march.linear_index", "march.hit_index", "march.hit", "march.height_before", "march.steep"),
     "shade": ("shade.albedo", "shade.normal", "shade.lit"),
 }
-"""What is compared in each stage; besides, in shade the colours of what is shown, and in resolve depth and background."""
+"""What is compared in each stage, in order of computation; besides, in shade the colours of what is shown, and in resolve
+depth and background."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -89,7 +91,19 @@ class Port:
 
     def vector(self, name: str, at: Ints) -> Vector:
         """The port's own numbers at pixels."""
-        return [Number(self.model.machine, x) for x in self.floats(name)[at].T]
+        return [self.stored(x) for x in self.floats(name)[at].T]
+
+    def stored(self, values: Floats, own: Number | None = None) -> Number:
+        """What was handed in, as the port computed with it: rounded to a float32 at most once where it was stored.
+
+        A port that computes with more digits, or whose compiler keeps more in a register, hands in float32 all the same.
+        own: what the number may be by the port's own inputs; where that is one number, and the port's, nothing was rounded.
+        """
+        rounded = np.isfinite(values)
+        if own is not None:
+            rounded &= (own.deviation != 0.0) | (own.value != values)
+        error = np.where(rounded, self.model.machine.device.operation * UNIT * np.abs(values), 0.0)
+        return Number(self.model.machine, values, error)
 
     def polygon(self, at: Any = slice(None)) -> Ints:
         """Of each pixel, by the port's own account; -1 where it names none of the scene's."""
@@ -116,18 +130,20 @@ def raster_input(port: Port) -> tuple[Points, tuple[str, ...]]:
     """The candidates of the port's own vertices, where it has as many as the program."""
     quads = port.model.quads
     count = sum(4 * len(each) for each in quads)
-    if "vertex.clip" not in port.handed or len(port.handed["vertex.clip"]) != count:
-        return port.own_points, ()
     names = port.names("vertex")
-    machine = port.model.machine
-    clip = Number(machine, np.asarray(port.handed["vertex.clip"], np.float64))
-    patch = np.asarray(port.handed["vertex.patch"], np.float64) if "vertex.patch" in names else None
+    if not names or any(len(port.handed[name]) != count for name in names):
+        return port.own_points, ()
+    legal = port.model.vertices
+    clip, patch = (
+        port.stored(np.asarray(port.handed[name], np.float64), legal[name]) if name in names else legal[name]
+        for name in ("vertex.clip", "vertex.patch")
+    )
     own, first = [], 0
     for each in quads:
         row = []
         for quad in each:
             rows = slice(first, first + 4)
-            row.append(Quad(quad.face, quad.patch if patch is None else patch[rows], clip[rows]))  # type: ignore[arg-type]
+            row.append(Quad(quad.face, patch[rows], clip[rows]))  # type: ignore[arg-type]
             first += 4
         own.append(row)
     with np.errstate(all="ignore"):  # a port's vertices may be anything
@@ -154,7 +170,8 @@ def march_input(port: Port, candidates: Points) -> tuple[Points, Bools]:
         agrees &= port.agreement(name, candidates.pixel, raster_field(port, candidates, name))
     points = candidates.take(agrees)
     if "raster.patch" in names:
-        points = replace(points, point=port.vector("raster.patch", points.pixel))
+        own = port.floats("raster.patch")[points.pixel]
+        points = replace(points, point=[port.stored(own[:, k], x) for k, x in enumerate(points.point)])
     if "raster.face" in names:
         return points, port.ints("raster.face") < 0
     return points, not_covered(candidates, port.pixels)

@@ -37,7 +37,7 @@ class Rows:
 
     def take(self, index: Index) -> Self:
         """Some rows."""
-        return replace(self, **{f.name: taken(getattr(self, f.name), index) for f in fields(self)})  # type: ignore[type-var]
+        return replace(self, **{f.name: taken(getattr(self, f.name), index) for f in fields(self)})  # type: ignore[type-var, arg-type]
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:

@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.displacement.contract import STAGES as CONTRACT
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
 from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.referees.displacement.drawn_faces import judge_faces, other_faces
 from ibr_ref.oracle.referees.displacement.hits import hits_of, lighted, shades_of
-from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.replay import (
     Port,
     light_input,
@@ -27,21 +28,6 @@ from ibr_ref.oracle.referees.displacement.replay import (
     shade_input,
 )
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades
-
-NOTHING: dict[str, float] = {
-    "raster.face": -1,
-    "raster.patch_id": -1,
-    "raster.patch": np.nan,
-    "march.linear_index": -1,
-    "march.hit_index": -1,
-    "march.hit": np.nan,
-    "march.height_before": np.nan,
-    "march.steep": 0,
-    "shade.albedo": np.nan,
-    "shade.normal": np.nan,
-    "shade.lit": 0,
-}
-"""What arrays hold where there is no fragment, or, of shade, none that was kept (displacement.md, "Stages")."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -76,7 +62,7 @@ class Stages:
     def names(self, stage: str) -> tuple[str, ...]:
         """What of a stage was handed in."""
         if stage == "resolve":
-            return tuple(name for name in ("color", "depth") if name in self.port.handed)
+            return tuple(name for name in ("depth", "color") if name in self.port.handed)
         return self.port.names(stage)
 
     def judge(self, stage: str, *, clean: bool) -> Judgement:
@@ -156,28 +142,15 @@ def _picture(port: Port, stage: str, replayed: tuple[str, ...], verdict: Verdict
     )
 
 
-def vertices(model: Model) -> dict[str, Any]:
-    """The legal corners of all faces, (V, 4) and (V, 3)."""
-    machine, program = model.machine, model.program
-    clip, patch = [], []
-    for each, quads in zip(model.patches, model.quads, strict=True):
-        clip += [machine.of(quad.clip) for quad in quads]
-        patch += [machine.of(program.written_corners(each, quad)) for quad in quads]
-    nothing = [Number(machine, np.zeros((0, 4))), Number(machine, np.zeros((0, 3)))]
-    return {
-        "vertex.clip": np.concatenate(clip or nothing[:1]),  # type: ignore[arg-type]
-        "vertex.patch": np.concatenate(patch or nothing[1:]),  # type: ignore[arg-type]
-    }
-
-
 def _vertex(port: Port) -> Judgement:
-    legal, names = vertices(port.model), port.names("vertex")
+    if other_faces(port):
+        return judge_faces(port)
+    legal, names = port.model.vertices, port.names("vertex")
     count = len(legal["vertex.clip"])
     wrong, blame = np.zeros(count, np.bool_), np.full(count, -1, np.int8)
     for i, name in enumerate(names):
         found = np.asarray(port.handed[name], np.float64)
-        same = found.shape == legal[name].shape
-        off = ~legal[name].allows(found).all(axis=1) if same else np.ones(count, np.bool_)
+        off = ~legal[name].allows(found).all(axis=1)
         blame[off & ~wrong] = i
         wrong |= off
     widths = [2.0 * np.broadcast_to(x.deviation, x.shape).max(axis=1) for x in legal.values()]
@@ -213,7 +186,7 @@ def _judged(port: Port, names: Sequence[str], pixel: Ints, fields: Sequence[Any]
     """Outcomes at `pixel` with these fields, and besides nothing at the pixels `bare`."""
     agrees, machine = [], port.model.machine
     for name, field in zip(names, fields, strict=True):
-        nothing = NOTHING[name]
+        nothing = float(CONTRACT[name].blank)
         none: Any = np.full(len(bare), nothing)
         if isinstance(field, list):
             none = [Number(machine, none)] * len(field)
@@ -321,7 +294,7 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: list[Number], clean: bool
     Which polygon wins hangs on fragments that the port did not hand in. They are the program's only where the port's own
     stages are right: `clean`. The colours of what is shown were judged with shade; they count here where it was not.
     """
-    names = tuple(name for name in ("color", "depth") if name in port.handed)
+    names = tuple(name for name in ("depth", "color") if name in port.handed)
     nothing = _discarded(port, hits)
     nothing[hits.pixel[hits.depth.high >= 1.0]] = True
     bare = np.flatnonzero(nothing & port.picture.winners.empty if clean else nothing)
@@ -333,6 +306,11 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: list[Number], clean: bool
     entry = lit[row] if colors_too else np.flatnonzero(may_win)
     pixel = np.concatenate([hits.pixel[entry], bare])
     agrees = []
+    if "depth" in names:
+        shown, one = hits.depth[entry], np.ones(len(bare))
+        error = np.concatenate([shown.deviation + 0.0 * shown.value, 0.0 * one + port.model.device.depth_step])
+        depth = Number(port.model.machine, np.concatenate([shown.value, one]), error)
+        agrees.append(port.agreement("depth", pixel, depth))
     if "color" in names:
         found = port.model.program.rows(np.asarray(port.handed["color"])).reshape(port.pixels, 3)
         behind = [port.model.machine.lanes(x, bare) for x in port.model.background]
@@ -340,11 +318,6 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: list[Number], clean: bool
         if colors_too:
             before = _agree(color, found[hits.pixel[entry]], row)
         agrees.append(np.concatenate([before, _agree(behind, found[bare])]))
-    if "depth" in names:
-        shown, one = hits.depth[entry], np.ones(len(bare))
-        error = np.concatenate([shown.deviation + 0.0 * shown.value, 0.0 * one + port.model.device.depth_step])
-        depth = Number(port.model.machine, np.concatenate([shown.value, one]), error)
-        agrees.append(port.agreement("depth", pixel, depth))
     right, blame = judged(pixel, agrees, port.pixels)
     known = np.zeros(port.pixels, np.bool_)
     known[hits.pixel] = True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,46 +12,50 @@ from ibr_ref.oracle.arithmetic.number import Floats, Ints, Number
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, TraceRow
+from ibr_ref.oracle.referees.displacement.drawn_faces import FACES, faces_rows, other_faces
+from ibr_ref.oracle.referees.displacement.element import Element
 from ibr_ref.oracle.referees.displacement.hits import hits_of, lighted, shades_of
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.replay import (
     ARRAYS,
     Port,
-    light_input,
     march_input,
     raster_input,
     shade_input,
 )
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Vector
-from ibr_ref.oracle.referees.displacement.stages import vertices
-
-FACES = ("base", "u=0", "u=1", "v=0", "v=1", "top")
 
 
 def trace(case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
     """The rows of one element of a stage; "image" and "resolve" follow the pixel through all stages."""
+    if stage == "image":  # from the case alone
+        handed = {name: handed[name] for name in ("color", "depth") if name in handed}
     port = Port(model=Model(case, device), handed=handed)
     if stage == "vertex":
-        return list(_vertex(port, int(index[0])))
+        return faces_rows(port) if other_faces(port) else list(_vertex(port, int(index[0])))
     row, column = index
     pixel = int(row) * case.scene.camera.width + int(column)
     candidates, _ = raster_input(port)
     here = candidates.take(candidates.pixel == pixel)
-    rows = list(_raster(port, pixel, here))
+    element = Element(port, pixel)
+    rows = [*_raster(port, pixel, here), *element.raster(here)]
     if stage == "raster":
         return rows
     points, _ = march_input(port, candidates)
     points = points.take(points.pixel == pixel)
+    hits, _ = hits_of(port.model, points)
     march = [row for i in range(len(points)) for row in _march(port, pixel, points.take(slice(i, i + 1)))]
+    march += [*_outcomes(port, pixel, hits), *element.march(hits)]
     if stage == "march":
         return march
-    hits, _ = hits_of(port.model, points)
     hits = shade_input(port, hits)
     hits = hits.take(hits.pixel == pixel)
     shade = list(_shade(port, pixel, hits))
+    looks = element.shade(hits)
     if stage == "shade":
-        return shade
-    return rows + march + shade + list(_resolve(port, pixel, hits))
+        return shade + looks
+    resolve = list(_resolve(port, pixel, hits))
+    return rows + march + shade + looks + resolve + (element.image() if stage == "image" else element.resolve(hits))
 
 
 def _number(value: float) -> str:
@@ -85,11 +90,12 @@ def _one(vector: Vector, i: int) -> Vector:
 
 
 def _vertex(port: Port, index: int) -> Iterator[TraceRow]:
-    legal = vertices(port.model)
+    legal = port.model.vertices
     for name in ("vertex.patch", "vertex.clip"):
         found = np.asarray(port.handed[name], np.float64) if name in port.handed else None
         usable = found is not None and index < len(found)
-        yield _row(f"{name}[{index}]", legal[name][index], found[index] if usable and found is not None else None)
+        own = found[index] if usable and found is not None else None
+        yield replace(_row(f"{name}[{index}]", legal[name][index], own), array=name)
 
 
 def _raster(port: Port, pixel: int, candidates: Points) -> Iterator[TraceRow]:
@@ -154,6 +160,19 @@ class _Search:
         reference = f"{place}: {heights}: {'yes' if true else 'no'}"
         return TraceRow(step=step, reference=reference, port=answer, margin=margin, bound=bound, note=note)
 
+    def near_plane(self, index: int) -> TraceRow:
+        """Of the lattice point that the search ended at: a hit before the near plane is discarded."""
+        z = self.machine.of(self.program.projected(self.patch, self.sample(index)[0])[2])
+        margin, bound = abs(float(z.value[0])), float(z.deviation[0])
+        return TraceRow(
+            step=f"k = {index}: clip z >= 0, at or behind the near plane",
+            reference="yes" if z.value[0] >= 0.0 else "no: discarded",
+            port="",
+            margin=margin,
+            bound=bound,
+            note="certain" if margin > bound else "either way is legal",
+        )
+
 
 def _march(port: Port, pixel: int, point: Points) -> Iterator[TraceRow]:
     """The search of one fragment, along the port's own way where its indices say which way it took."""
@@ -178,16 +197,22 @@ def _march(port: Port, pixel: int, point: Points) -> Iterator[TraceRow]:
             yield row
             inside = said if said is not None else row.reference.endswith("yes")
             low, high = (low, middle) if inside else (middle, high)
-    hits, _ = hits_of(port.model, point)
+        yield search.near_plane(high)
+
+
+def _outcomes(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
+    """What the marches may come to; a hit before the near plane is discarded."""
     for i in range(len(hits)):
-        margin = hits.hit[2][i].plus(hits.height_before[i], -1.0).plus(params.steep_threshold, -1.0)
+        margin = hits.hit[2][i].plus(hits.height_before[i], -1.0).plus(port.case.params.steep_threshold, -1.0)
+        kept = bool(hits.kept[i])
         yield TraceRow(
             step="a legal outcome: i, k, (u, v, h), a, steep",
             reference=f"{hits.linear_index[i]}, {hits.hit_index[i]}, {_vector([x.value[i] for x in hits.hit])}, "
             f"{_number(hits.height_before.value[i])}, {bool(hits.steep[i])}",
             port=_handed(port, pixel, ARRAYS["march"]),
-            margin=abs(float(margin.value)),
-            bound=float(margin.deviation),
+            margin=abs(float(margin.value)) if kept else None,
+            bound=float(margin.deviation) if kept else None,
+            note="" if kept else "discarded",
         )
 
 
@@ -222,18 +247,12 @@ def _shade(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
         yield from _shadow(port, patch, hit, shades.lit[shades.hit == i])
     for i in range(len(shades)):
         for name, legal in (("shade.albedo", shades.albedo), ("shade.normal", shades.normal)):
-            yield _row(name, _one(legal, i), port.floats(name)[pixel] if name in port.handed else None)
-        yield TraceRow(step="shade.lit", reference=str(bool(shades.lit[i])), port=_handed(port, pixel, ("shade.lit",)))
-    _, color = lighted(model, hits, light_input(port, hits, shades))
-    for i in range(len(color[0])):
-        yield _row("colour", _one(color, i), _color(port, pixel))
-
-
-def _color(port: Port, pixel: int) -> Any:
-    if not port.has("color"):
-        return None
-    found = np.asarray(port.handed["color"])[divmod(pixel, port.case.scene.camera.width)]
-    return found.astype(np.float64) / (255.0 if found.dtype == np.uint8 else 1.0)
+            yield _row(f"legal: {name}" if name in port.handed else name, _one(legal, i), None)
+        yield TraceRow(step="legal: shade.lit", reference=str(bool(shades.lit[i])), port="")
+    if not port.names("shade"):
+        _, color = lighted(model, hits, shades)
+        for i in range(len(color[0])):
+            yield _row("colour", _one(color, i), None)
 
 
 def _shadow(port: Port, patch: Any, hit: Vector, lit: Ints) -> Iterator[TraceRow]:

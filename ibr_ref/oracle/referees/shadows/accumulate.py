@@ -13,6 +13,7 @@ from ibr_ref.oracle.device import TINY, UNIT, Device
 from ibr_ref.oracle.referees.shadows.transform import centered, gamma
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 
 def accumulated(shadows: Sequence[Bounded], unorm8: bool) -> Bounded:
@@ -31,11 +32,18 @@ def accumulated(shadows: Sequence[Bounded], unorm8: bool) -> Bounded:
     return Bounded(np.minimum(value, 1.0), error + rounding, device)
 
 
+def in_bytes(found: Floats, device: Device) -> Bools:
+    """Which numbers of a port may be what an 8-bit buffer holds: k / 255, as a quotient or a product with its inverse."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        steps = np.rint(255.0 * found)
+        return np.asarray(np.abs(found - steps / 255.0) <= (device.quotient + device.operation) * UNIT, np.bool_)
+
+
 def _in_bytes(shadows: Sequence[Bounded], device: Device) -> Bounded:
     """alpha and every sum are rounded to bytes and saturate.
 
     Where the device converts to the nearest byte (0.5) the sums are those of the conventions. Elsewhere blending may round
-    source and product too: up to one step away from the unrounded sum at each addition (shadows.md, stage 5).
+    source and product too: up to one step away from the unrounded sum at each addition (shadows/method.md, "In 8 bits").
     """
     slack = 0.5 if device.byte == 0.5 else max(device.byte, 1.0)
     weight = np.floor(255.0 / len(shadows) + 0.5) / 255.0

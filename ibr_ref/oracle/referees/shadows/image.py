@@ -43,16 +43,16 @@ class Accepted:
         return cls(case, seen, outcomes, color, *spread(case, seen, outcomes, color))
 
     def judge(self, given: Handed) -> Judgement:
-        """Colour and depth: each by itself, and one outcome for both."""
+        """Depth and colour: each by itself, and one outcome for both."""
         seen, scene, pixel = self.seen, self.case.scene, self.seen.pixel[self.outcomes.fragment]
         shown, depth = (None if name not in given else np.asarray(given[name]) for name in ("color", "depth"))
         legal, nothing = {}, {}
-        if shown is not None:
-            legal["color"] = resolve.allows(self.color, shown.reshape(-1, 3)[pixel])
-            nothing["color"] = resolve.allows_nothing(scene, seen, shown, None)
         if depth is not None:
             legal["depth"] = seen.depth[self.outcomes.fragment].allows(depth.reshape(-1)[pixel])
             nothing["depth"] = resolve.allows_nothing(scene, seen, None, depth)
+        if shown is not None:
+            legal["color"] = resolve.allows(self.color, shown.reshape(-1, 3)[pixel])
+            nothing["color"] = resolve.allows_nothing(scene, seen, shown, None)
         crowded = np.zeros(len(seen.empty), np.bool_)
         crowded[seen.pixel[self.outcomes.crowded]] = True
         every = np.logical_and.reduce(list(legal.values())), np.logical_and.reduce(list(nothing.values()))

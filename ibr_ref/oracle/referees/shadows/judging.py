@@ -40,6 +40,7 @@ def judgement(
         undecided=np.zeros(legal.shape, np.bool_) if undecided is None else undecided,
         width=np.broadcast_to(width, legal.shape).copy(),
         blame=blame,
+        part=arrays[0] if stage in ("maps", "warp") else "",
     )
 
 

@@ -24,7 +24,7 @@ Ints = NDArray[np.int64]
 
 
 VISIBLE = 1.0 / 255.0
-"""A step of what is shown: alternatives that differ by less are not counted as undecided (oracle.md, 8-bit colour)."""
+"""A step of what is shown: alternatives that differ by less are not counted as undecided."""
 
 
 @dataclass(frozen=True, eq=False)

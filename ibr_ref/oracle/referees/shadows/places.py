@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, total, uploaded
 from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.referees.shadows.transform import Lens
 
 Floats = NDArray[np.float64]
 
 STEP = 2.0 / 3.0
-"""g: the light's samples are at the centres of cells three to an edge (shadows.md, inputs)."""
+"""g: the light's samples are at the centres of cells three to an edge (shadows/method.md, "Light samples")."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,10 +91,9 @@ class Place:
     fraction: Bounded
 
 
-def located(lines: Floats, at: Bounded) -> list[Place]:
+def located(lines: Bounded, at: Bounded) -> list[Place]:
     """The legal places on an axis with three positions, the reference's first: two where the middle line is too near."""
-    device = at.device
-    low, middle, high = (uploaded(line, device) for line in lines)
+    low, middle, high = (lines[k] for k in range(3))
     away = at - middle
     cells = [int(at.value >= middle.value)]
     if abs(away.value) <= away.error:
@@ -102,10 +102,29 @@ def located(lines: Floats, at: Bounded) -> list[Place]:
     return [Place(cell, (at - ends[cell][0]) / (ends[cell][1] - ends[cell][0])) for cell in cells]
 
 
-def fraction_in(lines: Floats, at: Bounded, cell: int) -> Bounded:
+def fraction_in(lines: Bounded, at: Bounded, cell: int) -> Bounded:
     """The fraction in a cell that the port has chosen."""
-    ends = [uploaded(line, at.device) for line in lines[cell : cell + 2]]
+    ends = [lines[cell], lines[cell + 1]]
     return (at - ends[0]) / (ends[1] - ends[0])
+
+
+def depths(case: Any, lens: Lens, lines: Sequence[Bounded]) -> Bounded:
+    """(3, 3) of the middle of the caster's box along the light's view axis; lines: the three x and three y of the maps."""
+    device, three = lines[0].device, np.arange(3)
+    axes, ends = np.asarray(case.scene.axes, np.float64), np.asarray(case.scene.caster.bounds, np.float64)
+    offset = [lines[0][np.tile(three, 3)], lines[1][np.repeat(three, 3)]]
+    middle = []
+    for k in range(3):
+        box = (uploaded(ends[0, k], device) + uploaded(ends[1, k], device)) * exact(0.5, device)
+        middle.append(total([box, *(o * uploaded(axis[k], device) for o, axis in zip(offset, axes, strict=True))]))
+    w = lens.clip_of(middle)[3]
+    return Bounded(w.value.reshape(3, 3), w.error.reshape(3, 3), device)
+
+
+def paced(fraction: Bounded, w0: Bounded, w1: Bounded) -> Bounded:
+    """Of the way in the maps, after a fraction of the way between two depths."""
+    gone = fraction * w1
+    return gone / ((exact(1.0, fraction.device) - fraction) * w0 + gone)
 
 
 def positions(case: Any, device: Device) -> list[list[Bounded]]:

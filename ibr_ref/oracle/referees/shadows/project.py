@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, converted, exact, uploaded
 from ibr_ref.oracle.accept.fetch import FILTER_ROUNDINGS, Texture, fetch, texels_near
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.referees.shadows.footprint import reads
@@ -19,6 +19,10 @@ from ibr_ref.oracle.referees.shadows.transform import Lens, centered
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
+
+
+TRUNCATED = 2.0
+"""A device whose operations are rounded, or truncated, leaves x - 0 as it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,10 +54,15 @@ class Shadow:
     """Whether that is legal."""
     spoiled: Bools
     """What it is made of is no number: anything is legal, the fault lies before."""
+    whole: bool = False
+    """The outcome of one comparison: 0 or 1, and nothing between them where either is legal."""
 
     def allows(self, found: Floats) -> Bools:
         """Whether a port's number is legal."""
-        return np.asarray(self.first.allows(found) | (self.open & self.other.allows(found)) | self.spoiled)
+        legal = self.first.allows(found) | (self.open & self.other.allows(found))
+        if self.whole:
+            legal &= (found == 0.0) | (found == 1.0)
+        return np.asarray(legal | self.spoiled)
 
 
 def coordinate(lens: Lens, world: Sequence[Bounded]) -> Coordinate:
@@ -64,11 +73,13 @@ def coordinate(lens: Lens, world: Sequence[Bounded]) -> Coordinate:
     return Coordinate(s, t, r, w, np.zeros(len(w.value), np.bool_))
 
 
-def handed(found: Floats, w: Bounded) -> Coordinate:
-    """The port's own coordinates (n, 3)."""
+def handed(found: Floats, legal: Coordinate) -> Coordinate:
+    """The port's own coordinates (n, 3), besides those that are legal; a projective fetch divides by q_w once more."""
     usable = np.isfinite(found)
-    s, t, r = (exact(np.where(usable[:, k], found[:, k], 0.0), w.device) for k in range(3))
-    return Coordinate(s, t, r, w, np.asarray(~usable.all(axis=1)))
+    s, t, r = (
+        converted(np.where(usable[:, k], found[:, k], 0.0), legal.w.device, own) for k, own in enumerate(legal.axes)
+    )
+    return Coordinate(s, t, r, legal.w, np.asarray(~usable.all(axis=1)))
 
 
 def shadow(case: Any, texels: Map, at: Coordinate, caster: Bools) -> Shadow:
@@ -86,7 +97,8 @@ def shadow(case: Any, texels: Map, at: Coordinate, caster: Bools) -> Shadow:
     alternative = _either(read, other, open_).where(~inside, other.where(open_, none))
     both = _either(alternative, none, inside)
     spoiled = at.spoiled | (reads(texels.spoiled, at.s, at.t) if texels.spoiled.any() else False)
-    return Shadow(first, both.where(border, other), (border | open_) & possible, spoiled)
+    whole = case.params.content == "depth" and not case.params.pcf
+    return Shadow(first, both.where(border, other), (border | open_) & possible, spoiled, whole)
 
 
 def _either(a: Bounded, b: Bounded, also: Bools) -> Bounded:
@@ -157,9 +169,12 @@ class _Sides:
 def _sides(case: Any, texels: Map, at: Coordinate) -> _Sides:
     device = at.r.device
     bias = uploaded(float(case.params.bias), device)
-    # Either r - bias > texel or r > texel + bias.
-    depth = at.r - bias
-    depth = depth.widened(device.operation * UNIT * (at.r.size + bias.size))
+    if float(case.params.bias) == 0.0 and device.operation <= TRUNCATED:
+        depth = at.r
+    else:
+        # Either r - bias > texel or r > texel + bias.
+        depth = at.r - bias
+        depth = depth.widened(device.operation * UNIT * (at.r.size + bias.size))
     firm, low, high = (a.reshape(-1) for a in (texels.firm.value, texels.low, texels.high))
     if case.params.quantize is None:
         return _Sides(firm, low, high, depth.value, depth.low, depth.high)

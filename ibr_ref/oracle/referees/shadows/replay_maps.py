@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, stored, uploaded
 from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.shadows import maps, places
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement, stacked
@@ -43,11 +44,20 @@ def images(given: Inputs) -> Judgement | None:
     results = []
     for j, i in np.ndindex(3, 3):
         usable = own is not None and np.isfinite(own[j, i]).all()
-        at = [exact(own[j, i, k], given.device) for k in range(2)] if own is not None and usable else [x[i], y[j]]
+        at = [x[i], y[j]]
+        if own is not None and usable:
+            at = [stored(n, given.device, legal) for n, legal in zip(own[j, i], at, strict=True)]
         results.append(maps.allows(given.case, given.centre_lens, at, found[j, i]))
     right, undecided, width = (np.stack(part).reshape(found.shape) for part in zip(*results, strict=True))
-    replayed = [] if own is None else ["maps.positions"]
-    return judgement("maps", "texel", ["maps.image"], [right], width, replayed=replayed, undecided=undecided)
+    return judgement(
+        "maps",
+        "texel",
+        ["maps.image"],
+        [right],
+        width,
+        replayed=fed("shadows", ["maps.image"], given.handed),
+        undecided=undecided,
+    )
 
 
 def controls(given: Inputs) -> Judgement | None:
@@ -68,9 +78,8 @@ def spots(given: Inputs) -> Judgement | None:
         return None
     right = {name: np.zeros((given.count, 2), np.bool_) for name in own}
     together, undecided, width = np.zeros((given.count, 2), np.bool_), np.zeros((given.count, 2), np.bool_), []
-    lines = given.positions[0, :, 0], given.positions[:, 0, 1]
     for sample, k in np.ndindex(given.count, 2):
-        legal = places.located(lines[k], given.offset_seen(sample)[k])
+        legal = places.located(given.lines[k], given.offset_seen(sample)[k])
         for place in legal:
             agrees = {
                 "warp.cell": cells is None or bool(cells[sample, k] == place.cell),
@@ -88,34 +97,50 @@ def spots(given: Inputs) -> Judgement | None:
         list(own),
         [right[name].reshape(shape) for name in own],
         np.array(width).reshape(shape),
+        replayed=fed("shadows", own, given.handed),
         undecided=undecided.reshape(shape),
         together=together.reshape(shape),
     )
 
 
+def depths(given: Inputs) -> Judgement | None:
+    """The caster's depths in the nine maps."""
+    found = given.own("maps.depths", sampled=False)
+    if found is None or not given.projective:
+        return None
+    bound, feeds = given.made_depths, fed("shadows", ["maps.depths"], given.handed)
+    return judgement("maps", "map", ["maps.depths"], [bound.allows(found)], 2.0 * bound.error, replayed=feeds)
+
+
+def shares(given: Inputs) -> Judgement | None:
+    """The projective fractions."""
+    found = given.own("warp.shares")
+    if found is None or not given.projective:
+        return None
+    feeds = fed("shadows", ["warp.shares"], given.handed)
+    compared = _compared(given, found, lambda s, p: stacked(given.made_shares(p)), feeds)
+    return _judged(given, "share", "warp.shares", *compared, feeds)
+
+
 def row_grids(given: Inputs) -> Judgement | None:
     """The grids of the two rows."""
-    feeds = ("controls", "warp.cell", "warp.fraction")
-    return _points(given, "warp.row_grids", lambda s, p: stacked(given.made_row_grids(p)), feeds)
+    return _points(given, "warp.row_grids", lambda s, p: stacked(given.made_row_grids(s, p)))
 
 
 def rows(given: Inputs) -> Judgement | None:
     """The two rows."""
-    feeds = ("controls", "warp.cell", "warp.fraction", "warp.row_grids")
-    return _texels(given, "warp.rows", lambda s, p: stacked(given.made_rows(s, p)), feeds)
+    return _texels(given, "warp.rows", lambda s, p: stacked(given.made_rows(s, p)))
 
 
 def grids(given: Inputs) -> Judgement | None:
     """The grid of the object's place."""
-    return _points(given, "warp.grid", given.made_grid, ("warp.fraction", "warp.row_grids"))
+    return _points(given, "warp.grid", given.made_grid)
 
 
 def warped(given: Inputs) -> Judgement | None:
     """The map of each sample; method="direct": as it is rendered."""
     if not given.direct:
-        return _texels(
-            given, "warp.image", given.made_image, ("warp.fraction", "warp.row_grids", "warp.rows", "warp.grid")
-        )
+        return _texels(given, "warp.image", given.made_image)
     found = given.own("warp.image")
     if found is None:
         return None
@@ -126,18 +151,20 @@ def warped(given: Inputs) -> Judgement | None:
     return judgement("warp", "texel", ["warp.image"], [right], width, undecided=undecided)
 
 
-def _points(given: Inputs, name: str, make: Callable[[int, Spot], Bounded], feeds: Sequence[str]) -> Judgement | None:
+def _points(given: Inputs, name: str, make: Callable[[int, Spot], Bounded]) -> Judgement | None:
     found = given.own(name)
     if found is None or given.direct:
         return None
+    feeds = fed("shadows", [name], given.handed)
     right, width = _compared(given, found, make, feeds)
     return _judged(given, "control point", name, np.asarray(right.all(axis=-1)), width.max(axis=-1), feeds)
 
 
-def _texels(given: Inputs, name: str, make: Callable[[int, Spot], Bounded], feeds: Sequence[str]) -> Judgement | None:
+def _texels(given: Inputs, name: str, make: Callable[[int, Spot], Bounded]) -> Judgement | None:
     found = given.own(name)
     if found is None or given.direct:
         return None
+    feeds = fed("shadows", [name], given.handed)
     return _judged(given, "texel", name, *_compared(given, found, make, feeds), feeds)
 
 
@@ -158,4 +185,4 @@ def _compared(
 def _judged(given: Inputs, element: str, name: str, right: Bools, width: Floats, feeds: Sequence[str]) -> Judgement:
     if given.count == 1:
         right, width = right[0], width[0]
-    return judgement("warp", element, [name], [right], width, replayed=[n for n in feeds if n in given.handed])
+    return judgement("warp", element, [name], [right], width, replayed=feeds)

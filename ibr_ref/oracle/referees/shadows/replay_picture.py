@@ -9,10 +9,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import exact
+from ibr_ref.oracle.accept.bounded import converted, stored
 from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.shadows import resolve
-from ibr_ref.oracle.referees.shadows.accumulate import accumulated
+from ibr_ref.oracle.referees.shadows.accumulate import accumulated, in_bytes
 from ibr_ref.oracle.referees.shadows.branches import Branches, branches, in_shadow, spread
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement
@@ -21,6 +22,8 @@ from ibr_ref.oracle.referees.shadows.project import Shadow, handed, shadow
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
+
+_WARPED = ("maps.", "controls", "warp.")
 
 
 def depth(given: Inputs) -> Judgement | None:
@@ -59,35 +62,35 @@ def projected(given: Inputs) -> Judgement | None:
     if not names:
         return None
     seen, pixel = given.seen, given.seen.pixel
-    fragments, nothing = _agreeing(given)
-    legal = {name: fragments.copy() for name in names}
+    fragments, bare = _agreeing(given)
+    legal, nothing = {name: fragments.copy() for name in names}, {name: bare.copy() for name in names}
     undecided, width = seen.wild.copy(), np.zeros(len(seen.empty))
     for i, at in enumerate(given.coordinates):
         if coords is not None:
             own = coords[i].reshape(-1, 3)
-            nothing &= (own == 0.0).all(axis=1)
+            nothing["project.coord"] &= (own == 0.0).all(axis=1)
             for k, axis in enumerate(at.axes):
                 legal["project.coord"] &= axis.allows(own[pixel, k])
                 np.maximum.at(width, pixel, 2.0 * axis.error)
-            at = handed(own[pixel], at.w)
+            at = handed(own[pixel], at)
         if found is not None:
             flat = found[i].reshape(-1)
-            nothing &= flat == 0.0
+            nothing["project.shadow"] &= flat == 0.0
             shadows = shadow(given.case, given.map(i), at, seen.caster)
             legal["project.shadow"] &= shadows.allows(flat[pixel])
             undecided[pixel[_differs(shadows)]] = True
             np.maximum.at(width, pixel, 2.0 * np.broadcast_to(shadows.first.error, pixel.shape))
-    right = [seen.any_of(pixel, legal[name], nothing).reshape(seen.shape) for name in names]
-    every = np.logical_and.reduce([legal[name] for name in names])
+    right = [seen.any_of(pixel, legal[name], nothing[name]).reshape(seen.shape) for name in names]
+    every = [np.logical_and.reduce([each[name] for name in names]) for each in (legal, nothing)]
     return judgement(
         "project",
         "pixel",
         names,
         right,
         width.reshape(seen.shape),
-        replayed=[name for name in ("warp.image", "depth") if name in given.handed],
+        replayed=_fed(given, *names),
         undecided=undecided.reshape(seen.shape),
-        together=seen.any_of(pixel, every, nothing).reshape(seen.shape),
+        together=seen.any_of(pixel, *every).reshape(seen.shape),
     )
 
 
@@ -103,23 +106,38 @@ def sums(given: Inputs) -> Judgement | None:
     found = np.asarray(given.handed["accumulate.shadow"]).astype(np.float64)
     own, name = given.own("project.shadow"), "accumulate.shadow"
     if own is not None:
-        shadows = [exact(_numbers(s), given.device) for s in own]
+        shadows = [stored(_numbers(s), given.device) for s in own]
         bound = accumulated(shadows, given.case.params.accumulation == "unorm8")
-        right = bound.allows(found) | ~np.isfinite(own.sum(axis=0))  # what is no number is wrong before
+        # What is no number is wrong before.
+        right = (bound.allows(found) & _stored(given, found)) | ~np.isfinite(own).all(axis=0)
         width = np.broadcast_to(2.0 * bound.error, found.shape)
-        return judgement("accumulate", "pixel", [name], [right], width, replayed=["project.shadow"])
+        return judgement("accumulate", "pixel", [name], [right], width, replayed=_fed(given, name))
     seen, outcomes = given.seen, _outcomes(given)
     pixel = seen.pixel[outcomes.fragment]
     fragments, nothing = _agreeing(given)
     legal = outcomes.shadow.allows(found.reshape(-1)[pixel]) & fragments[outcomes.fragment]
     right = seen.any_of(pixel, legal, nothing & (found.reshape(-1) == 0.0))
     right[seen.pixel[outcomes.crowded]] = True
+    right &= _stored(given, found).reshape(-1)
     width = np.zeros(found.size)
     np.maximum.at(width, pixel, 2.0 * np.broadcast_to(outcomes.shadow.error, pixel.shape))
-    feeds = [n for n in ("warp.image", "depth", "project.coord") if n in given.handed]
+    feeds = _fed(given, name)
     return judgement(
         "accumulate", "pixel", [name], [right.reshape(seen.shape)], width.reshape(seen.shape), replayed=feeds
     )
+
+
+def _stored(given: Inputs, found: Floats) -> Bools:
+    """Whether sums may be what the accumulation's buffer holds."""
+    if given.case.params.accumulation == "unorm8":
+        return in_bytes(found, given.device)
+    return np.isfinite(found)
+
+
+def _fed(given: Inputs, *names: str) -> tuple[str, ...]:
+    """The port's arrays that some are computed from; method="direct" warps nothing."""
+    found = fed("shadows", names, given.handed)
+    return tuple(name for name in found if not given.direct or name == "warp.image" or not name.startswith(_WARPED))
 
 
 def _numbers(array: Floats) -> Floats:
@@ -131,12 +149,12 @@ def _outcomes(given: Inputs) -> Branches:
     """What the sum may be, from the port's own shadows or coordinates if it has handed them in."""
     seen, own = given.seen, given.own("project.shadow")
     if own is not None:
-        shadows = [exact(_numbers(s).reshape(-1)[seen.pixel], given.device) for s in own]
+        shadows = [stored(_numbers(s).reshape(-1)[seen.pixel], given.device) for s in own]
         return in_shadow(seen, accumulated(shadows, given.case.params.accumulation == "unorm8"))
     coords, outcomes = given.own("project.coord"), []
     for i, at in enumerate(given.coordinates):
         if coords is not None:
-            at = handed(coords[i].reshape(-1, 3)[seen.pixel], at.w)
+            at = handed(coords[i].reshape(-1, 3)[seen.pixel], at)
         outcomes.append(shadow(given.case, given.map(i), at, seen.caster))
     return branches(given.case, seen, outcomes)
 
@@ -147,7 +165,8 @@ def colors(given: Inputs) -> Judgement | None:
         return None
     seen, scene, own = given.seen, given.case.scene, given.own("accumulate.shadow", sampled=False)
     if own is not None:
-        outcomes = in_shadow(seen, exact(_numbers(own).reshape(-1)[seen.pixel], given.device))
+        read = converted if given.case.params.accumulation == "unorm8" else stored
+        outcomes = in_shadow(seen, read(_numbers(own).reshape(-1)[seen.pixel], given.device))
     else:
         outcomes = _outcomes(given)
     color = resolve.colors(scene, seen, outcomes.fragment, outcomes.turned, outcomes.shadow)
@@ -165,6 +184,6 @@ def colors(given: Inputs) -> Judgement | None:
         ["color"],
         [right.reshape(seen.shape)],
         width.reshape(seen.shape),
-        replayed=[n for n in ("depth", "accumulate.shadow") if n in given.handed],
+        replayed=_fed(given, "color"),
         undecided=(undecided | seen.wild).reshape(seen.shape),
     )

@@ -39,7 +39,14 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     if "atlas.normal" in handed:
         pages = [page_of(handed["atlas.normal"], i, page.shape) for i, page in enumerate(stages["atlas.normal"])]
         bad["atlas.normal"] = _flat([(owner < 0) & ~_all(page == 0) for owner, page in zip(owners, pages, strict=True)])
-    return judgement("atlas", "texel", bad, np.zeros(len(width), np.bool_), width)
+    return judgement("atlas", "texel", bad, np.zeros(len(width), np.bool_), width, places=_places(owners))
+
+
+def _places(pages: list[NDArray[np.int64]]) -> NDArray[np.int64]:
+    """(texels, 3) page, row and column."""
+    return np.concatenate(
+        [np.insert(np.indices(page.shape).reshape(2, -1).T, 0, number, axis=1) for number, page in enumerate(pages)]
+    )
 
 
 def texels(case: Case, device: Device) -> dict[str, list[Bounded]]:

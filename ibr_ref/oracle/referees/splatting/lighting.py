@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, power, total, unit, uploaded
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.referees.splatting.place import either
 
 Bools = NDArray[np.bool_]
@@ -67,7 +67,7 @@ def shades(case: Case, device: Device, world: Vector, codes: NDArray[np.uint8], 
 def lit_terms(case: Case, device: Device, world: Vector, codes: NDArray[np.uint8]) -> Terms:
     """Cosines and highlight."""
     light = case.scene.light
-    normal = unit([exact(codes[:, axis] - 128.0, device) / exact(127.0, device) for axis in range(3)])
+    normal = unit([_code(codes[:, axis], device) / exact(127.0, device) for axis in range(3)])
     towards_light = _towards(light.homogeneous, world, device)
     facing = dot(normal, towards_light)
     if not light.specular > 0.0:
@@ -76,6 +76,12 @@ def lit_terms(case: Case, device: Device, world: Vector, codes: NDArray[np.uint8
     mirrored = _mirrored(normal, towards_light, _towards(case.scene.camera.eye, world, device), facing)
     shine = uploaded(light.specular, device) * power(mirrored.positive(), light.exponent)
     return Terms(facing, mirrored, shine)
+
+
+def _code(codes: NDArray[np.uint8], device: Device) -> Bounded:
+    """k - 128 of a byte that is read as an integer; or as k / 255, a quotient, times 255."""
+    k = codes.astype(np.float64)
+    return Bounded(k - 128.0, (device.quotient + 2.0 * device.operation) * UNIT * k, device)
 
 
 def _towards(source: Any, point: Vector, device: Device) -> list[Bounded]:

@@ -24,7 +24,7 @@ Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 
 JUMP = 0.05
-"""Neighbours farther apart than this share of the depth lie on different surfaces (the method's page, stage 1)."""
+"""Neighbours farther apart than this share of the depth lie on different surfaces (splatting/method.md, "Stage normals")."""
 
 CHOICES = (1, -1, 0)
 """Along an axis: the neighbour right or below, left or above, or none."""
@@ -53,20 +53,32 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     """All texels of all images, in order, as one row of elements."""
     parts = [_judge_image(case, device, handed, i) for i in range(len(case.scene.images))]
     wrong, undecided, width = (np.concatenate([part[k].reshape(-1) for part in parts]) for k in range(3))
-    return judgement("normals", "texel", {"atlas.normal": wrong}, undecided, width)
+    places = np.concatenate([part[3] for part in parts])
+    return judgement("normals", "texel", {"atlas.normal": wrong}, undecided, width, places=places)
 
 
 def _judge_image(case: Case, device: Device, handed: Handed, image: int) -> tuple[NDArray[Any], ...]:
     legal = Codes(surface(case.scene.images[image], device))
-    best = legal.surface.valid.copy()
-    # Where the port put the image in its atlas is another stage's matter.
-    for name, rects in (("reference", case.frame.stages["atlas.rects"]), ("port", handed.get("atlas.rects"))):
-        places = np.zeros((0, 5), np.int64) if rects is None else np.asarray(rects, np.int64)
-        codes = cut_out(handed["atlas.normal"], places[image]) if len(places) else None
+    wrong, rect = read(case, handed, image, legal)
+    rows, columns = np.indices(wrong.shape)
+    places = np.stack([np.full_like(rows, rect[0]), rows + rect[2], columns + rect[1]], axis=2).reshape(-1, 3)
+    return wrong, legal.undecided, legal.width, places
+
+
+def read(case: Case, handed: Handed, image: int, legal: Codes) -> tuple[Bools, Ints]:
+    """(H, W) which codes of an image are wrong, and the rectangle that they are read from: the port's if that is better.
+
+    Where the port put the image in its atlas is another stage's matter.
+    """
+    rects = np.asarray(case.frame.stages["atlas.rects"], np.int64)
+    best, where = legal.surface.valid.copy(), rects[image]
+    for places in [rects, *([np.asarray(handed["atlas.rects"], np.int64)] if "atlas.rects" in handed else [])]:
+        codes = cut_out(handed["atlas.normal"], places[image])
         if codes is not None and codes.shape == (*legal.surface.valid.shape, 3):
             wrong = ~legal.allows(codes.astype(np.float64)) & ~_overwritten(places, image)
-            best = wrong if name == "reference" or wrong.sum() < best.sum() else best
-    return best, legal.undecided, legal.width
+            if places is rects or wrong.sum() < best.sum():
+                best, where = wrong, places[image]
+    return best, where
 
 
 def _overwritten(rects: Ints, image: int) -> Bools:
@@ -110,7 +122,7 @@ def steps(surface: Surface, axis: int) -> Steps:
         maybe[side] = there & (margin >= -off), there & (margin >= off)
     after, before = sizes[1], sizes[-1]
     first, off = after.value <= before.value, after.error + before.error
-    close = (np.abs(after.value - before.value) <= off) & (off > 0.0)
+    close = (np.abs(after.value - before.value) <= off) & (off > 0.0) & ~_same(surface.depth.value, surface.valid, axis)
     (after_maybe, after_sure), (before_maybe, before_sure) = maybe[1], maybe[-1]
     legal = {
         1: after_maybe & (~before_sure | first | close),
@@ -119,6 +131,12 @@ def steps(surface: Surface, axis: int) -> Steps:
     }
     takes_after = usable[1] & (~usable[-1] | first)
     return Steps(legal, np.where(takes_after, 1, np.where(usable[-1], -1, 0)))
+
+
+def _same(depth: NDArray[np.float64], valid: Bools, axis: int) -> Bools:
+    """Both neighbours have one depth: their distances are made of the same numbers, and tie on every device."""
+    after, before = (_shifted(np.where(valid, depth, np.nan), axis, side, np.nan) for side in (1, -1))
+    return np.asarray(after == before)
 
 
 def _difference(a: Bounded, b: Bounded) -> Bounded:

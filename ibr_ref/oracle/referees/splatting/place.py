@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, total, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, stored, total, uploaded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
@@ -233,26 +233,26 @@ LANDED = ("vertex.window", "vertex.depth", "vertex.width")
 """The port's arrays that a splat is made of."""
 
 
-def landed(case: Case, device: Device, points: Table, handed: Handed) -> tuple[Landed, tuple[str, ...]]:
-    """The points as the port has them, where it handed them in, else as they are; and the names of the port's arrays.
+def landed(case: Case, device: Device, points: Table, handed: Handed) -> Landed:
+    """The points as the port has them, where it handed them in, else as they are.
 
     A point is kept as the port's width says, or its window position; where these are NaN, it is not drawn.
     """
     fed = tuple(name for name in LANDED if name in handed)
-    fields: dict[str, Bounded] = {}
-    if len(fed) < len(LANDED):
-        own = placed(case, device, points)
-        if not fed:
-            return own, fed
-        fields = {"x": own.x, "y": own.y, "depth": own.depth, "width": own.width}
+    own = placed(case, device, points)
+    if not fed:
+        return own
+    fields = {"x": own.x, "y": own.y, "depth": own.depth, "width": own.width}
+    given = {name: np.asarray(handed[name], np.float64) for name in fed}
     kept = np.ones(len(points.rows), np.bool_)
-    for name in fed:
-        given = exact(np.asarray(handed[name], np.float64), device)
-        kept &= np.isfinite(given.value.reshape(len(kept), -1)).all(axis=1)
-        if name == "vertex.window":
-            fields["x"], fields["y"] = given[:, 0], given[:, 1]
-        else:
-            fields[name.removeprefix("vertex.")] = given
-        if name == "vertex.width":
-            kept &= given.value > 0.0
-    return Landed(**fields, kept=kept, doubtful=np.zeros_like(kept)), fed
+    for array in given.values():
+        kept &= np.isfinite(array.reshape(len(kept), -1)).all(axis=1)
+    if "vertex.window" in fed:
+        x, y = given["vertex.window"].T
+        fields["x"], fields["y"] = stored(x, device, own.x), stored(y, device, own.y)
+    if "vertex.depth" in fed:
+        fields["depth"] = stored(given["vertex.depth"], device, own.depth)
+    if "vertex.width" in fed:
+        fields["width"] = stored(given["vertex.width"], device, own.width)
+        kept &= given["vertex.width"] > 0.0
+    return Landed(**fields, kept=kept, doubtful=np.zeros_like(kept))

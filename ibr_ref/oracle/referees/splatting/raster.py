@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.splatting.place import landed
 from ibr_ref.oracle.referees.splatting.splats import Contest, contest
-from ibr_ref.oracle.referees.splatting.table import Table, table
+from ibr_ref.oracle.referees.splatting.table import Table, fed_table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
+from ibr_ref.splatting.contract import STAGES
 
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
@@ -25,8 +27,8 @@ ARRAYS = ("raster.splat", "raster.depth", "raster.overdraw")
 def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     """Every pixel: a splat that may win it, with its own depth, and as many splats as may cover it."""
     camera = case.scene.camera
-    splats = table(case, device)
-    points, fed = landed(case, device, splats, handed)
+    splats = fed_table(case, device, handed)
+    points = landed(case, device, splats, handed)
     result = contest(points, case.params.shape, camera.width, camera.height, twins(case, splats, handed))
     pixels = camera.width * camera.height
     given = {name: np.asarray(handed[name]).reshape(pixels) for name in ARRAYS if name in handed}
@@ -37,7 +39,9 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     np.fmax.at(width, result.pixel, 2.0 * result.depth.error[result.splat])
     shape = (camera.height, camera.width)
     shaped = {name: (wrong & result.judged).reshape(shape) for name, wrong in bad.items()}
-    return judgement("raster", "pixel", shaped, undecided.reshape(shape), width.reshape(shape), fed)
+    return judgement(
+        "raster", "pixel", shaped, undecided.reshape(shape), width.reshape(shape), fed("splatting", shaped, handed)
+    )
 
 
 def _contradictions(result: Contest, given: dict[str, NDArray[np.generic]]) -> dict[str, Bools]:
@@ -47,12 +51,12 @@ def _contradictions(result: Contest, given: dict[str, NDArray[np.generic]]) -> d
     if "raster.splat" in given:
         found = given["raster.splat"].astype(np.int64)
         agrees &= result.splat == found[result.pixel]
-        empty &= found == -1
+        empty &= found == STAGES["raster.splat"].blank
         bad["raster.splat"] = ~_any(result, agrees, empty)
     if "raster.depth" in given:
         depth = given["raster.depth"].astype(np.float64)
         agrees &= result.depth[result.splat].allows(depth[result.pixel])
-        empty &= depth == 1.0
+        empty &= depth == STAGES["raster.depth"].blank
         bad["raster.depth"] = ~_any(result, agrees, empty)
     if "raster.overdraw" in given:
         count = given["raster.overdraw"].astype(np.int64)

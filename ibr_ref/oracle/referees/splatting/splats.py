@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.winners import winners
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.referees.splatting.place import Landed
 from ibr_ref.oracle.referees.splatting.spans import Axis, axis
 
@@ -56,7 +56,8 @@ def buffered(depth: Bounded) -> Bounded:
     device, value = depth.device, depth.value
     if not device.subpixel_any:
         with np.errstate(invalid="ignore"):
-            return depth.widened(np.where(value == value.astype(np.float32), 0.0, UNIT * np.abs(value)))
+            exactly = (depth.error == 0.0) & (value == value.astype(np.float32))
+            return depth.widened(np.where(exactly, 0.0, UNIT * np.abs(value)))
     units = SETUP_QUOTIENTS * device.quotient + SETUP_OPERATIONS * device.operation
     scale = 1.0 if device.minus_one else np.abs(value)
     return depth.widened(units * UNIT * scale + device.depth_step)
@@ -164,9 +165,3 @@ def _later(pixel: Ints, splat: Ints, certain: Bools, low: Floats, high: Floats, 
         leads = leader[group]
         loses[order[certain[leads] & (splat[leads] < splat[order])]] = True
     return loses
-
-
-def single(device: Device, value: Floats) -> Bounded:
-    """A number that the port computed with, and stored as a float32 at the most once more."""
-    with np.errstate(invalid="ignore"):
-        return Bounded(value, np.where(value == value.astype(np.float32), 0.0, UNIT * np.abs(value)), device)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, stored, uploaded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.judgement import Handed
@@ -31,20 +31,27 @@ class Table:
     albedo: Bounded
     """(V, 3)."""
     codes: NDArray[np.uint8]
-    """(V, 3) 8-bit normals that the points are lit with: an input of the case."""
+    """(V, 3) 8-bit normals that the points are lit with: the port's own, or those that the case hands over."""
     usable: Bools
     """(V,) whether the port's texels can be computed with; elsewhere it went wrong before."""
-    fed: tuple[str, ...]
-    """The port's own arrays that are in here."""
+    given: NDArray[np.uint8]
+    """(V, 3) the normals that the case hands over."""
 
     @property
     def shares(self) -> list[slice]:
         """The rows of each image's points."""
         return [slice(first, stop) for first, stop in pairwise(self.starts.tolist())]
 
+    @property
+    def lightings(self) -> list[Table]:
+        """The same with each set of normals: a port that hands in its own may light with those of the case all the same."""
+        if np.array_equal(self.codes, self.given):
+            return [self]
+        return [self, replace(self, codes=self.given)]
+
 
 def table(case: Case, device: Device, handed: Handed | None = None) -> Table:
-    """The points, with the port's own depths and colours where it handed in an atlas that has them."""
+    """The points, with the port's own depths, colours and normals where it handed in an atlas that has them."""
     handed = {} if handed is None else handed
     images = [image.arrays for image in case.scene.images]
     places = [np.nonzero(mask) for _, _, mask in images]
@@ -52,32 +59,48 @@ def table(case: Case, device: Device, handed: Handed | None = None) -> Table:
     rows, columns = (np.concatenate([place[axis] for place in places]) for axis in (0, 1))
     depth = uploaded(np.concatenate([depth[mask] for _, depth, mask in images]), device)
     albedo = stored_color(np.concatenate([color[mask] for color, _, mask in images]), device)
-    usable, fed = np.ones(len(rows), np.bool_), []
+    given = np.concatenate([codes[place] for codes, place in zip(normal_codes(case), places, strict=True)])
+    codes, usable = given, np.ones(len(rows), np.bool_)
     rects = np.asarray(handed.get("atlas.rects", case.frame.stages["atlas.rects"]), np.int64)
-    for name in ("atlas.depth", "atlas.color"):
+    for name in ("atlas.depth", "atlas.color", "atlas.normal"):
         if name in handed:
             texels, there = _fetched(handed[name], rects, places)
-            given = exact(np.where(there, texels.T, 1.0).T, device)
-            depth, albedo = (given, albedo) if name == "atlas.depth" else (depth, given)
+            texels = np.where(there, texels.T, 1.0).T
+            if name == "atlas.depth":
+                depth = stored(texels, device)
+            elif name == "atlas.color":
+                albedo = _texel_color(texels, device)
+            else:
+                codes = texels.astype(np.uint8)
             usable &= there
-            fed.append(name)
-    if fed and "atlas.rects" in handed:
-        fed.append("atlas.rects")
     return Table(
         starts=np.cumsum([0, *counts]),
         rows=rows,
         columns=columns,
         depth=depth,
         albedo=albedo,
-        codes=np.concatenate([codes[place] for codes, place in zip(normal_codes(case), places, strict=True)]),
+        codes=codes,
         usable=usable,
-        fed=tuple(fed),
+        given=given,
     )
+
+
+def fed_table(case: Case, device: Device, handed: Handed) -> Table:
+    """The points for a later stage: from the port's atlas, or where that cannot be computed with, from the case."""
+    points = table(case, device, handed)
+    return points if points.usable.all() else table(case, device)
 
 
 def stored_color(color: NDArray[np.float64], device: Device) -> Bounded:
     """Colours as a texture has them: rounded once, or k / 255 of a byte, which is a quotient."""
     return uploaded(color, device).widened(device.quotient * UNIT * color)
+
+
+def _texel_color(texels: NDArray[np.float64], device: Device) -> Bounded:
+    """The port's own colours: of a byte each fetch is a quotient of its own; floats are what they are."""
+    bytes_ = np.rint(255.0 * np.clip(texels, 0.0, 1.0)) / 255.0
+    exactly = stored_color(bytes_, device)
+    return exactly.where(np.abs(texels - bytes_) <= exactly.error + UNIT * bytes_, stored(texels, device))
 
 
 def normal_codes(case: Case) -> list[NDArray[np.uint8]]:

@@ -17,6 +17,7 @@ def judgement(
     undecided: Bools,
     width: NDArray[np.float64],
     replayed: tuple[str, ...] = (),
+    places: NDArray[np.int64] | None = None,
 ) -> Judgement:
     """bad: for each array that was compared, in order, where no legal outcome that agrees with those before has it."""
     blame = np.full(undecided.shape, -1, np.int8)
@@ -31,4 +32,5 @@ def judgement(
         undecided=undecided,
         width=width,
         blame=blame,
+        places=places,
     )

@@ -7,16 +7,21 @@ from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import TINY, UNIT, Device
 from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.splatting.lighting import Shades, shades
 from ibr_ref.oracle.referees.splatting.place import Placed, placed
 from ibr_ref.oracle.referees.splatting.table import Table, table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
+from ibr_ref.splatting.contract import STAGES
 
 Bools = NDArray[np.bool_]
 
-ARRAYS = ("vertex.source", "vertex.width", "vertex.window", "vertex.depth", "vertex.color")
+ARRAYS = ("vertex.source", "vertex.window", "vertex.depth", "vertex.width", "vertex.color")
+"""In order of computation: the law of the width is taken at the distance of a point that has been placed."""
+LEADERS = ("vertex.width", "vertex.window", "vertex.depth")
+"""What tells whether the port has kept a point: the first of them that it handed in."""
 
 
 def judge(case: Case, device: Device, handed: Handed) -> Judgement:
@@ -34,17 +39,20 @@ def judge(case: Case, device: Device, handed: Handed) -> Judgement:
     if "vertex.source" in handed:
         bad["vertex.source"] = wrong_source(points, handed)
     if "vertex.color" in handed:
-        colors = shades(case, device, where.world, points.codes, points.albedo)
-        bad["vertex.color"] = wrong_color(colors, np.asarray(handed["vertex.color"], np.float64))
+        found = np.asarray(handed["vertex.color"], np.float64)
+        lit = [(table, shades(case, device, where.world, table.codes, table.albedo)) for table in points.lightings]
+        wrong = [wrong_color(colors, found) & points.usable for _, colors in lit]
+        best = min(range(len(lit)), key=lambda i: int(wrong[i].sum()))
+        (points, colors), bad["vertex.color"] = lit[best], wrong[best]
         undecided |= colors.split & (np.abs(colors.color.value - colors.other.value).max(axis=1) > 1.0 / 255.0)
         width = np.fmax(width, 2.0 * colors.color.error.max(axis=1))
     ordered = {name: bad[name] & points.usable for name in ARRAYS if name in bad}
-    return judgement("vertex", "vertex", ordered, undecided, width, points.fed)
+    return judgement("vertex", "vertex", ordered, undecided, width, fed("splatting", ordered, handed))
 
 
 def numbers(where: Placed) -> dict[str, tuple[Bounded, ...]]:
     """The stage's continuous arrays but for the colour, column by column."""
-    return {"vertex.width": (where.width,), "vertex.window": (where.x, where.y), "vertex.depth": (where.depth,)}
+    return {"vertex.window": (where.x, where.y), "vertex.depth": (where.depth,), "vertex.width": (where.width,)}
 
 
 def outcomes(where: Placed, handed: Handed) -> tuple[dict[str, Bools], bool]:
@@ -55,7 +63,7 @@ def outcomes(where: Placed, handed: Handed) -> tuple[dict[str, Bools], bool]:
     given = {name: np.asarray(handed[name], np.float64) for name in numbers(where) if name in handed}
     if not given:
         return {}, False
-    leader = next(iter(given))
+    leader = next(name for name in LEADERS if name in given)
     says = given[leader] > 0.0 if leader == "vertex.width" else np.isfinite(_rows(given[leader])).any(axis=1)
     kept = np.where(where.doubtful, says, where.kept)
     bad = {}
@@ -63,8 +71,9 @@ def outcomes(where: Placed, handed: Handed) -> tuple[dict[str, Bools], bool]:
         if name in given:
             found = _rows(given[name])
             within = np.logical_and.reduce([bound.allows(found[:, k]) for k, bound in enumerate(bounds)])
-            nothing = (found == 0.0).all(axis=1) if name == "vertex.width" else np.isnan(found).all(axis=1)
-            bad[name] = ~np.where(kept, within & np.isfinite(found).all(axis=1), nothing)
+            left = STAGES[name].left
+            dropped = ((found == left) | (np.isnan(found) & np.isnan(left))).all(axis=1)
+            bad[name] = ~np.where(kept, within & np.isfinite(found).all(axis=1), dropped)
     return bad, True
 
 
@@ -83,6 +92,6 @@ def wrong_color(colors: Shades, found: NDArray[np.float64]) -> Bools:
     """All channels must agree with the same branch."""
     agrees = np.zeros(len(found), np.bool_)
     for color, legal in colors.branches:
-        # Stored as a float32 once more.
-        agrees |= legal & color.widened(UNIT * np.abs(color.value)).allows(found).all(axis=1)
+        # Stored as a float32 once more; what is less than a normal number is 0 where denormals are flushed.
+        agrees |= legal & color.widened(UNIT * np.abs(color.value) + TINY).allows(found).all(axis=1)
     return ~agrees

@@ -11,6 +11,16 @@ from ibr_ref.oracle.ports.shadows.raster import Flags, Ints, Raster
 
 fault = Catalogue("maps")
 
+
+@fault("listed-first-is-centre", "the first of the samples that are listed is taken for the light's centre")
+class _FirstIsCentre(Port):
+    def sample_places(self) -> list[Floats]:
+        places = super().sample_places()
+        if isinstance(self.params.light_samples, np.ndarray):
+            self.centre = places[0]
+        return places
+
+
 GIVEN = "the picture is made of the maps that the case hands over"
 
 

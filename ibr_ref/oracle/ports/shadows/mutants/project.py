@@ -144,6 +144,17 @@ class _Repeated(Port):
     shadow_sampler = _Repeat
 
 
+class _LastTexelLeftOut(Sampler):
+    def wrap(self, index: Ints, size: int) -> Ints:
+        return np.clip(index, 0, size - 2)
+
+
+@fault("pcf-last-texel", "comparisons are clamped to the last texel but one", small=True)
+class _PcfLastTexel(Port):
+    def filtered(self, sampler: Sampler, image: Floats, s: Floats, t: Floats, r: Floats) -> Floats:
+        return super().filtered(_LastTexelLeftOut(self.ops), image, s, t, r)
+
+
 @fault("half-or-more", "shadow is all or nothing: 1 where the mask is at least one half")
 class _Binary(Port):
     def shadow(self, image: Floats, s: Floats, t: Floats, r: Floats) -> Floats:
@@ -172,6 +183,18 @@ class _BiasDoubled(Port):
 class _OrEqual(Port):
     def behind(self, here: Floats, texel: Floats) -> Flags:
         return here >= texel
+
+
+@fault("pcf-or-equal", "the four comparisons are GL_LEQUAL's: in shadow only where r - bias >= texel", small=True)
+class _PcfOrEqual(Port):
+    def behind(self, here: Floats, texel: Floats) -> Flags:
+        return here >= texel if self.params.pcf else super().behind(here, texel)
+
+
+@fault("compare-ge", "shadow where depths are equal too, as they are beyond the light's far plane", small=True)
+class _CompareGe(Port):
+    def behind(self, here: Floats, texel: Floats) -> Flags:
+        return here >= texel if self.params.quantize is None else super().behind(here, texel)
 
 
 @fault("quantize-truncates", "both sides of the comparison are truncated to bytes", small=True)

@@ -19,6 +19,12 @@ class _AmbientMore(Port):
         return np.asarray(super().ambient() * 1.02)
 
 
+@fault("ambient-byte", "ambient is held as a byte", small=True)
+class _AmbientByte(Port):
+    def ambient(self) -> Floats:
+        return np.asarray(np.rint(super().ambient() * 255.0) / 255.0)
+
+
 @fault("ambient-added", "light is added to ambient whole, not times 1 - ambient")
 class _AmbientAdded(Port):
     def direct_share(self, ambient: Floats) -> Floats:

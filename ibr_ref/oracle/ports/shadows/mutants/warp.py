@@ -13,11 +13,22 @@ from ibr_ref.oracle.ports.shadows.sampler import Sampler
 
 fault = Catalogue("warp")
 
+ANY_ORDER = "the sum of all samples is the same in any order"
+
+
+@fault("listed-by-distance", "samples that are listed are taken from the light's centre outwards", hidden=ANY_ORDER)
+class _ByDistance(Port):
+    def sample_places(self) -> list[Floats]:
+        places = super().sample_places()
+        if not isinstance(self.params.light_samples, np.ndarray):
+            return places
+        return sorted(places, key=lambda place: float(np.sum((place - self.centre) ** 2)))
+
 
 @fault("s-for-t", "the rows are mixed by s")
 class _RowsMixedByS(Port):
-    def finished(self, rows: list[Floats], grids: list[Floats], grid: Floats, fraction: Floats) -> Floats:
-        return self.between(rows, grids, grid, fraction[0])
+    def finished(self, rows: list[Floats], grids: list[Floats], grid: Floats, shares: Floats) -> Floats:
+        return self.between(rows, grids, grid, shares[0])
 
 
 @fault("even-cells", "fractions are of half the range, though the middle line is not in its middle")
@@ -31,6 +42,25 @@ class _EvenCells(Port):
 class _Fraction8(Port):
     def fraction_in(self, at: float, ends: Floats) -> Floats:
         return np.asarray(np.rint(super().fraction_in(at, ends) * 256.0) / 256.0, np.float64)
+
+
+@fault("pace-even", "the fractions themselves are taken for the projective ones")
+class _EvenPace(Port):
+    def paced(self, fraction: Floats, w0: Floats, w1: Floats) -> Floats:
+        return fraction
+
+
+@fault("pace-reversed", "the projective fraction has the two depths exchanged")
+class _PaceReversed(Port):
+    def paced(self, fraction: Floats, w0: Floats, w1: Floats) -> Floats:
+        return super().paced(fraction, w1, w0)
+
+
+@fault("pace-of-the-upper-row", "the projective fraction of the upper row serves the lower one too")
+class _PaceOfUpper(Port):
+    def shares(self, cell: NDArray[np.int32], fraction: Floats) -> Floats:
+        upper, _, between = super().shares(cell, fraction)
+        return np.array([upper, upper, between])
 
 
 @fault("cell-exchanged", "maps and grids of the cell are indexed [i, j]")
@@ -47,8 +77,8 @@ class _FirstCell(Port):
 
 @fault("grids-half-floats", "the grids of the rows are held in half floats", small=True, hidden=BELOW_A_BYTE)
 class _HalfGrids(Port):
-    def row_grid(self, first: Floats, second: Floats, fraction: Floats) -> Floats:
-        return super().row_grid(first, second, fraction).astype(np.float16).astype(np.float64)
+    def row_grid(self, first: Floats, second: Floats, share: Floats) -> Floats:
+        return super().row_grid(first, second, share).astype(np.float16).astype(np.float64)
 
 
 @fault("grids-exchanged", "source and target of the warp are exchanged")
@@ -71,14 +101,14 @@ class _Farther(Port):
 
 @fault("rows-not-warped", "the rows are mixed without a second warp")
 class _RowsNotWarped(Port):
-    def finished(self, rows: list[Floats], grids: list[Floats], grid: Floats, fraction: Floats) -> Floats:
-        return self.between(rows, [grid, grid], grid, fraction[1])
+    def finished(self, rows: list[Floats], grids: list[Floats], grid: Floats, shares: Floats) -> Floats:
+        return self.between(rows, [grid, grid], grid, shares[2])
 
 
 @fault("rows-truncated", "rows are truncated to bytes between the passes", small=True, hidden=BELOW_A_BYTE)
 class _RowsTruncated(Port):
-    def finished(self, rows: list[Floats], grids: list[Floats], grid: Floats, fraction: Floats) -> Floats:
-        return super().finished([np.floor(row * 255.0) / 255.0 for row in rows], grids, grid, fraction)
+    def finished(self, rows: list[Floats], grids: list[Floats], grid: Floats, shares: Floats) -> Floats:
+        return super().finished([np.floor(row * 255.0) / 255.0 for row in rows], grids, grid, shares)
 
 
 @fault("other-diagonal", "cells are cut along the other diagonal")

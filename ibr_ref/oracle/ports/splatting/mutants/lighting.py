@@ -74,6 +74,14 @@ class AmbientOnePercentMore(Vertex):
         return super().coefficient(name) * (1.01 if name == "ambient" else 1.0)
 
 
+class AmbientOfBytes(Vertex):
+    """The ambient light is held as a byte."""
+
+    def coefficient(self, name: str) -> Floats:
+        value = super().coefficient(name)
+        return np.rint(255.0 * value) / 255.0 if name == "ambient" else value
+
+
 class DiffuseHalfPercentLess(Vertex):
     """The diffuse light is half a percent too dark."""
 
@@ -208,6 +216,7 @@ MUTANTS = (
     mutant(LampInViewSpace),
     mutant(TwoSidedLight),
     mutant(AmbientOnePercentMore, small=True),
+    mutant(AmbientOfBytes, small=True),
     mutant(DiffuseHalfPercentLess, small=True),
     mutant(SpecularOnePercentMore, small=True),
     mutant(ReflectedTheOtherWay),

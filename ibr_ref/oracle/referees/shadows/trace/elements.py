@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, TraceRow
+from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.shadows import replay_maps
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
-from ibr_ref.oracle.referees.shadows.trace.maps import control, map_texel, position
+from ibr_ref.oracle.referees.shadows.trace.maps import control, depth, map_texel, position
 from ibr_ref.oracle.referees.shadows.trace.picture import pixel
-from ibr_ref.oracle.referees.shadows.trace.warp import grid_point, place, warped_texel
+from ibr_ref.oracle.referees.shadows.trace.warp import grid_point, paced, place, warped_texel
 
 STEPS = {
-    "maps": (replay_maps.positions, replay_maps.images),
+    "maps": (replay_maps.positions, replay_maps.depths, replay_maps.images),
     "controls": (replay_maps.controls,),
     "warp": (
         replay_maps.spots,
+        replay_maps.shares,
         replay_maps.row_grids,
         replay_maps.rows,
         replay_maps.grids,
@@ -25,26 +24,31 @@ STEPS = {
 PICTURES = ("depth", "project", "accumulate", "resolve", "image")
 
 
-def trace(case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
+def trace(given: Inputs, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
     """Rows of one element, by its index in its judgement.
 
-    A stage has elements of several kinds; an index that fits more than one belongs to the first that is wrong there. Raises
-    ValueError for a stage that the method has not, and for an index that no element has.
+    A stage has elements of several kinds: its array in place of its name says which. Of a stage an index that fits more than
+    one belongs to the first that is wrong there. Raises ValueError for a stage that the method has not, and for an index
+    that no element has.
     """
     if stage in PICTURES:
-        return pixel(case, device, handed, stage, index)
-    if stage not in STEPS:
+        return pixel(given, stage, index)
+    name, _, part = stage.partition(".")
+    if name not in STEPS:
         raise ValueError(f"stage: found {stage!r}, allowed: {' | '.join([*STEPS, *PICTURES])}")
-    given = Inputs(case, device, handed)
-    array = _array(given, stage, index)
+    array = stage if part else _array(given, stage, index)
     if array == "maps.positions":
         return position(given, index)
+    if array == "maps.depths":
+        return depth(given, index)
     if array == "maps.image" or (array == "warp.image" and given.direct):
         return map_texel(given, array, index)
     if array == "controls":
         return control(given, index)
     if array in ("warp.cell", "warp.fraction"):
         return place(given, index)
+    if array == "warp.shares":
+        return paced(given, index)
     if array in ("warp.row_grids", "warp.grid"):
         return grid_point(given, array, index)
     return warped_texel(given, array, index)

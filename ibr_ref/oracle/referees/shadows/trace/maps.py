@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import exact, uploaded
+from ibr_ref.oracle.accept.bounded import stored, uploaded
 from ibr_ref.oracle.judgement import TraceRow
+from ibr_ref.oracle.referees.rows import compared_numbers, number, told
 from ibr_ref.oracle.referees.shadows import maps, places, replay_maps
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
-from ibr_ref.oracle.referees.shadows.trace.rows import number, told
 
 MOST = 12
 """Triangles that are listed."""
@@ -24,8 +25,23 @@ def position(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
         rows.append(told(f"{name}: range", np.asarray(given.case.scene.offset_range)[k].tolist()))
         rows.append(told(f"{name}: widened by the light's samples", f"{widest:.9g}"))
         rows += [number(f"{name}: line {n}", line) for n, line in enumerate(axis)]
-        rows.append(number(f"{name}: of this map, line {at}", axis[at], None if own is None else own[j, i, k]))
-    return rows
+        rows.append(told(f"{name}: of this map", f"line {at}"))
+    lines = [axis[at] for axis, at in zip(places.positions(given.case, given.device), (i, j), strict=True)]
+    return [*rows, number("position x, y", lines, None if own is None else own[j, i], array="maps.positions")]
+
+
+def depth(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
+    """Map (j, i): how far before the light the caster's middle is."""
+    own = given.own("maps.depths", sampled=False)
+    low, high = np.asarray(given.case.scene.caster.bounds).tolist()
+    return [
+        told("the caster's box, from", ", ".join(f"{n:.9g}" for n in low)),
+        told("to", ", ".join(f"{n:.9g}" for n in high)),
+        number("offset of the map", [line[n] for line, n in zip(given.lines, index[::-1], strict=True)]),
+        number(
+            "depth of its middle along the view axis", given.made_depths[index], None if own is None else own[index]
+        ),
+    ]
 
 
 def control(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
@@ -39,26 +55,31 @@ def control(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
         told("map j, i", f"{j}, {i}"),
         told("row, column of the grid", f"{r}, {c}"),
         told("as the case gives it", f"{value[0]:.17g}, {value[1]:.17g}"),
-        number("control point u, v", points, found),
+        number("control point u, v", points, found, array="controls"),
     ]
 
 
 def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRow]:
     """A texel of a map that is rendered: the triangles that may cover its samples."""
     case, device, k = given.case, given.device, int(given.case.params.map_samples)
-    depth = case.params.content == "depth"
+    depth, moved = case.params.content == "depth", False
     (row, column), at, lens = index[-2:], places.offset(case, device), given.lenses[0]
     if array == "maps.image":
         lens = given.centre_lens
         own = given.own("maps.positions", sampled=False)
+        reference = given.reference("maps.positions", sampled=False)
         line = [p[n] for p, n in zip(places.positions(case, device), index[1::-1], strict=True)]
-        at = line if own is None else [exact(n, device) for n in own[index[:2]]]
+        usable = own is not None and bool(np.isfinite(own[index[:2]]).all())
+        moved = usable and own is not None and bool((own[index[:2]] != reference[index[:2]]).any())
+        if own is not None and usable:
+            at = [stored(n, device, legal) for n, legal in zip(own[index[:2]], line, strict=True)]
+        else:
+            at = line
     elif given.count > 1:
         lens = given.lenses[index[0]]
     size = int(case.params.map_size) * (1 if depth else k)
     found = maps.drawn(case, lens, at, size)
     samples = 1 if depth else k
-    reference = np.asarray(case.frame.stages[array])[index]
     port = np.asarray(given.handed[array])[index]
     rows = [number("the object's offset", at)]
     near = np.flatnonzero((found.found.rows // samples == row) & (found.found.columns // samples == column))
@@ -74,8 +95,17 @@ def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRo
     else:
         low, high = (maps.counts(c, k)[row, column] for c in found.covered)
         rows.append(told("share of its samples that are covered", f"from {low:.9g} to {high:.9g}"))
-    rows.append(told("texel", f"{reference:.9g}", f"{port:.9g}", legal=_legal(given, array, index)))
-    return rows
+    texel = _texel(found, near, samples) if moved else float(np.asarray(case.frame.stages[array])[index])
+    mine, theirs = (np.array([float(n)]) for n in (texel, port))
+    return [*rows, compared_numbers("texel", mine, theirs, _legal(given, array, index), array)]
+
+
+def _texel(found: maps.Drawn, near: NDArray[np.int64], samples: int) -> float:
+    """The texel in exact arithmetic, of an object that stands where the port says."""
+    inside = near[(found.found.weights[near] >= 0.0).all(axis=1)]
+    if found.depth is not None:
+        return float(found.depth.value[inside].min(initial=1.0))
+    return len(np.unique(found.pixel[inside])) / float(samples * samples)
 
 
 def _legal(given: Inputs, array: str, index: tuple[int, ...]) -> bool:

@@ -5,25 +5,26 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact
-from ibr_ref.oracle.accept.bytes import allows_color
-from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.accept.bounded import Bounded, converted, exact, stored
 from ibr_ref.oracle.judgement import Handed, TraceRow
+from ibr_ref.oracle.referees.rows import DIFFERS, EITHER, color, number, text, told
 from ibr_ref.oracle.referees.shadows import resolve
-from ibr_ref.oracle.referees.shadows.accumulate import accumulated
+from ibr_ref.oracle.referees.shadows.accumulate import accumulated, in_bytes
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.project import Coordinate, Shadow, coordinate, handed, shadow
-from ibr_ref.oracle.referees.shadows.trace.rows import DIFFERS, EITHER, number, text, told
 
 MOST = 4
 """Fragments that are listed, the nearest first."""
+Index = tuple[int, ...]
 
 
-def pixel(case: Case, device: Device, arrays: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
+def pixel(given: Inputs, stage: str, index: Index) -> list[TraceRow]:
     """Pixel (row, column). For the stage "image" nothing of the port is fed to anything."""
-    given = Inputs(case, device, {} if stage == "image" else arrays)
+    arrays = given.handed
+    if stage == "image":
+        given = Inputs(given.case, given.device, {}, given.alone)
     seen = given.seen
     at = index[0] * seen.shape[1] + index[1]
     fragments = np.flatnonzero(seen.pixel == at)
@@ -33,56 +34,106 @@ def pixel(case: Case, device: Device, arrays: Handed, stage: str, index: tuple[i
         told("nothing may be", "yes" if seen.empty[at] else "no"),
     ]
     for fragment in fragments[:MOST]:
-        rows += _surface(given, int(fragment), arrays, index)
-    shown = fragments[0] if len(fragments) else -1
-    if shown >= 0:
-        rows += _shaded(given, int(shown), arrays, index)
-    for name in ("color", "depth"):
-        if name in arrays:
-            rows.append(_shown(name, getattr(case.frame, name)[index], np.asarray(arrays[name])[index]))
-    return rows
+        rows += _surface(given, int(fragment))
+    first = int(seen.first[at])
+    rows += _depth(given, first, arrays, index)
+    shown = _shown(given, fragments, first, at)
+    return rows + (_shaded(given, shown, arrays, index) if shown >= 0 else _nothing(given, arrays, index))
 
 
-def _surface(given: Inputs, fragment: int, arrays: Handed, index: tuple[int, ...]) -> list[TraceRow]:
+def _surface(given: Inputs, fragment: int) -> list[TraceRow]:
     seen = given.seen
     name = f"triangle {int(seen.triangle[fragment])}" + (" of the caster" if seen.caster[fragment] else "")
-    found = None if "depth" not in arrays else np.asarray(arrays["depth"])[index]
     return [
-        number(f"{name}: depth", seen.depth[fragment], found),
+        number(f"{name}: depth", seen.depth[fragment]),
         number(f"{name}: world x, y, z", [axis[fragment] for axis in seen.world]),
     ]
 
 
-def _shaded(given: Inputs, fragment: int, arrays: Handed, index: tuple[int, ...]) -> list[TraceRow]:
-    """The nearest one, through all samples."""
+def _depth(given: Inputs, first: int, arrays: Handed, index: Index) -> list[TraceRow]:
+    """What is seen in exact arithmetic; where the port sees another surface that may be, that one."""
+    if "depth" not in arrays:
+        return []
+    seen, found = given.seen, float(np.asarray(arrays["depth"])[index])
+    mine = np.flatnonzero(seen.pixel == index[0] * seen.shape[1] + index[1])
+    agreeing = [int(i) for i in mine if bool(seen.depth[int(i)].allows(found))]
+    shown = agreeing[0] if agreeing and first not in agreeing else first
+    bound = exact(1.0, given.device) if shown < 0 else seen.depth[shown]
+    return [number("depth", bound, found, array="depth")]
+
+
+def _shown(given: Inputs, fragments: NDArray[np.int64], first: int, at: int) -> int:
+    """The fragment that is followed: by the port's own depth, if that is a legal one's; -1 none."""
+    own = given.own("depth", sampled=False)
+    if own is None:
+        return first
+    found = own.reshape(-1)[at]
+    legal = [int(i) for i in fragments if bool(given.seen.depth[int(i)].allows(found))]
+    if legal:
+        return first if first in legal else legal[0]
+    return -1 if found == 1.0 and given.seen.empty[at] else first
+
+
+def _nothing(given: Inputs, arrays: Handed, index: Index) -> list[TraceRow]:
+    """Of a pixel that shows the background."""
+    rows, device = [], given.device
+    for name, count in (("project.coord", 3), ("project.shadow", 1)):
+        own = _own(given, arrays, name)
+        for i in range(given.count if own is not None else 0):
+            place = (i, *index) if given.count > 1 else None
+            none = [exact(0.0, device)] * count
+            rows.append(number(f"nothing: {name}", none, own[i][index], array=name, index=place))
+    if "accumulate.shadow" in arrays:
+        own = _own(given, given.handed, "project.shadow")  # whatever the pixel shows, its own shadows are summed
+        shadows = [exact([0.0 if own is None else np.nan_to_num(own[i][index])], device) for i in range(given.count)]
+        rows.append(_sum(given, shadows, arrays, index)[0])
+    background = [channel[0] for channel in resolve.background(given.case.scene, given.seen)]
+    return [*rows, *_colored(background, arrays, index, "background")]
+
+
+def _shaded(given: Inputs, fragment: int, arrays: Handed, index: Index) -> list[TraceRow]:
+    """One fragment through all samples."""
     seen, rows, shadows = given.seen, [], []
     one = slice(fragment, fragment + 1)
     world, caster = [axis[one] for axis in seen.world], seen.caster[one]
     coords, own = _own(given, arrays, "project.coord"), _own(given, arrays, "project.shadow")
     for i, lens in enumerate(given.lenses):
-        name = f"sample {i}: " if given.count > 1 else ""
+        name, sample = (f"sample {i}: ", (i, *index)) if given.count > 1 else ("", None)
         place = coordinate(lens, world)
-        rows.append(
-            number(f"{name}s, t, r", [axis[0] for axis in place.axes], None if coords is None else coords[i][index])
-        )
-        if "project.coord" in given.handed and coords is not None:
-            place = handed(coords[i][index][None], place.w)
+        found = None if coords is None else coords[i][index]
+        axes = [axis[0] for axis in place.axes]
+        rows.append(number(f"{name}s, t, r", axes, found, array="project.coord", index=sample))
+        if "project.coord" in given.handed and found is not None:
+            place = handed(found[None], place)
         legal = shadow(given.case, given.map(i), place, caster)
         port = None if own is None else float(own[i][index])
-        rows += [*_read(given, i, place, name), _told_shadow(name, legal, port)]
-        fed = "project.shadow" in given.handed and port is not None
-        shadows.append(exact(np.array([port]), given.device) if fed else legal.first)
-    total = accumulated(shadows, given.case.params.accumulation == "unorm8")
-    found = None if "accumulate.shadow" not in arrays else float(np.asarray(arrays["accumulate.shadow"])[index])
-    rows.append(number("sum of the samples", total[0], found))
-    if "accumulate.shadow" in given.handed and found is not None:
-        total = exact(np.array([found]), given.device)
-    color = resolve.colors(given.case.scene, seen, np.array([fragment]), np.zeros(1, np.bool_), total)
-    rows.append(number("surface colour", [channel[fragment] for channel in seen.color]))
-    rows.append(number("max(0, n . l)", seen.cosine[fragment]))
+        rows += [*_read(given, i, place, name), _told_shadow(name, legal, port, sample)]
+        fed = "project.shadow" in given.handed and port is not None and bool(np.isfinite(port))
+        shadows.append(stored(np.array([port]), given.device) if fed else legal.first)
+    total_row, total = _sum(given, shadows, arrays, index)
+    light = resolve.colors(given.case.scene, seen, np.array([fragment]), np.zeros(1, np.bool_), total)
+    rows += [
+        total_row,
+        number("surface colour", [channel[fragment] for channel in seen.color]),
+        number("max(0, n . l)", seen.cosine[fragment]),
+    ]
     if seen.edge_on[fragment]:
         rows.append(number("the same from the triangle's other side, " + EITHER, seen.other[fragment]))
-    return [*rows, _colored(color, arrays, index)]
+    return [*rows, *_colored([channel[0] for channel in light], arrays, index, "colour")]
+
+
+def _sum(given: Inputs, shadows: list[Bounded], arrays: Handed, index: Index) -> tuple[TraceRow, Bounded]:
+    """The samples' sum, and what the colour is made with."""
+    total = accumulated(shadows, given.case.params.accumulation == "unorm8")
+    if "accumulate.shadow" not in arrays:
+        return number("sum of the samples", total[0]), total
+    found = np.array([float(np.asarray(arrays["accumulate.shadow"])[index])])
+    row = number("sum of the samples", total[0], found, array="accumulate.shadow")
+    if given.case.params.accumulation == "unorm8" and not bool(in_bytes(found, given.device)[0]):
+        row = TraceRow(**{**vars(row), "step": "sum of the samples, a byte k / 255", "note": DIFFERS})
+    fed = "accumulate.shadow" in given.handed and bool(np.isfinite(found[0]))
+    read = converted if given.case.params.accumulation == "unorm8" else stored
+    return row, read(found, given.device) if fed else total
 
 
 def _own(given: Inputs, arrays: Handed, name: str) -> Any:
@@ -112,26 +163,19 @@ def _read(given: Inputs, sample: int, at: Coordinate, name: str) -> list[TraceRo
     return [*rows, told(f"{name}texels 00, 10, 01, 11", ", ".join(around))]
 
 
-def _told_shadow(name: str, legal: Shadow, port: float | None) -> TraceRow:
+def _told_shadow(name: str, legal: Shadow, port: float | None, sample: Index | None) -> TraceRow:
+    row = number(f"{name}shadow", legal.first[0], port, array="project.shadow", index=sample)
+    other = f", either way is legal: or up to {text(legal.other.high)}" if legal.open[0] else ""
     note = EITHER if legal.open[0] else ""
     if port is not None and not bool(legal.allows(np.array([port]))[0]):
         note = DIFFERS
-    reference = text(legal.first.value) + (f" or up to {text(legal.other.high)}" if legal.open[0] else "")
-    return TraceRow(
-        step=f"{name}shadow", reference=reference, port=text(port), bound=float(legal.first.error[0]), note=note
-    )
+    return TraceRow(**{**vars(row), "step": row.step + other, "note": note})
 
 
-def _colored(color: list[Bounded], arrays: Handed, index: tuple[int, ...]) -> TraceRow:
+def _colored(legal: list[Bounded], arrays: Handed, index: Index, step: str) -> list[TraceRow]:
     """In bytes where the port's picture is."""
-    found = np.asarray(arrays["color"])[index] if "color" in arrays else None
-    bound = max(float(channel.error[0]) for channel in color)
-    legal = found is None or all(bool(allows_color(c, found[k : k + 1])[0]) for k, c in enumerate(color))
-    port = "" if found is None else text(found / 255.0 if found.dtype == np.uint8 else found)
-    value = text([channel.value[0] for channel in color])
-    return TraceRow(step="colour", reference=value, port=port, bound=bound, note="" if legal else DIFFERS)
-
-
-def _shown(name: str, reference: Any, port: Any) -> TraceRow:
-    port = port / 255.0 if port.dtype == np.uint8 else port
-    return TraceRow(step=f"picture: {name}", reference=text(reference), port=text(port))
+    if "color" not in arrays:
+        return [number(step, legal)]
+    found = np.asarray(arrays["color"])[index]
+    right = bool(resolve.allows(legal, found))
+    return [color(step, legal, found, right)]

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, TraceRow
+from ibr_ref.oracle.referees.rows import compared, compared_numbers, number, text, told
 from ibr_ref.oracle.referees.splatting.atlas import page_of, texels
-from ibr_ref.oracle.referees.splatting.normals import JUMP, Codes, steps, surface
+from ibr_ref.oracle.referees.splatting.normals import JUMP, Codes, read, steps, surface
 from ibr_ref.oracle.referees.splatting.table import cut_out
-from ibr_ref.oracle.referees.splatting.trace.rows import DIFFERS, compared, number, text, told
 
 SIDES = {1: {1: "right", -1: "left", 0: "none"}, 0: {1: "below", -1: "above", 0: "none"}}
 
@@ -25,9 +27,7 @@ def normal_texel(case: Case, device: Device, handed: Handed, texel: int) -> list
     row, column = (int(i) for i in np.unravel_index(texel - (ends[image] - sizes[image]), shape))
     described = surface(case.scene.images[image], device)
     rows = [told("image, row, column", (image, row, column)), told("on the mask", bool(described.valid[row, column]))]
-    pages, place = handed.get("atlas.normal"), case.frame.stages["atlas.rects"][image]
-    reference = cut_out(case.frame.stages["atlas.normal"], place)
-    port = None if pages is None else cut_out(pages, place)
+    legal = Codes(described)
     if described.valid[row, column]:
         rows.append(number("depth", [described.depth[row, column]]))
         rows += _neighbours(described.depth, described.valid, row, column)
@@ -36,14 +36,16 @@ def normal_texel(case: Case, device: Device, handed: Handed, texel: int) -> list
             allowed = [SIDES[axis][side] for side, where in found.legal.items() if where[row, column]]
             rows.append(told(name, SIDES[axis][int(found.reference[row, column])]))
             rows.append(told(f"{name}: legal", " or ".join(allowed)))
-        for pixels, low, high in Codes(described).outcomes:
+        for pixels, low, high in legal.outcomes:
             for i in np.flatnonzero((pixels == (row, column)).all(axis=1)):
                 rows.append(told("codes of one outcome, from and to", f"{text(low[i])} to {text(high[i])}"))
-    mine = "" if reference is None else text(reference[row, column])
-    if port is None:
-        return [*rows, told("code", mine)]
-    legal = bool(Codes(described).allows(port.astype(np.float64))[row, column])
-    return [*rows, TraceRow(step="code", reference=mine, port=text(port[row, column]), note="" if legal else DIFFERS)]
+    mine = cut_out(case.frame.stages["atlas.normal"], case.frame.stages["atlas.rects"][image])
+    wrong, place = read(case, handed, image, legal)
+    theirs, index = cut_out(handed["atlas.normal"], place), (int(place[0]), row + int(place[2]), column + int(place[1]))
+    if mine is None or theirs is None or theirs.shape != mine.shape:
+        return rows
+    code, port = (array[row, column].astype(np.float64) for array in (mine, theirs))
+    return [*rows, compared_numbers("code", code, port, not wrong[row, column], "atlas.normal", index)]
 
 
 def _neighbours(depth: Bounded, valid: np.ndarray, row: int, column: int) -> list[TraceRow]:
@@ -73,17 +75,27 @@ def atlas_texel(case: Case, device: Device, handed: Handed, texel: int) -> list[
     )
     rows = [told("page, row, column", (page, row, column))]
     for image, rect in enumerate(stages["atlas.rects"].tolist()):
-        held = rect[0] == page and rect[1] <= column < rect[1] + rect[3] and rect[2] <= row < rect[2] + rect[4]
-        if held:
-            port = np.asarray(handed["atlas.rects"])[image].tolist() if "atlas.rects" in handed else None
-            rows.append(told(f"image {image}: page, x, y, width, height", rect, port))
+        if rect[0] == page and rect[1] <= column < rect[1] + rect[3] and rect[2] <= row < rect[2] + rect[4]:
+            rows.append(_rectangle(case, handed, image))
     for name, bounds in texels(case, device).items():
         bound = bounds[page][row, column]
         parts = [bound[c] for c in range(3)] if name == "atlas.color" else [bound]
         port = page_of(handed[name], page, bounds[page].value.shape)[row, column] if name in handed else None
-        rows.append(number(name, parts, port))
+        rows.append(number(name, parts, port, array=name, index=(page, row, column)))
     if "atlas.normal" in handed:
         mine = stages["atlas.normal"][page]
         theirs = page_of(handed["atlas.normal"], page, mine.shape)[row, column]
-        rows.append(TraceRow(step="atlas.normal", reference=text(mine[row, column]), port=text(theirs)))
+        beside = mine[row, column].any() or np.array_equal(mine[row, column], theirs)  # of an image: judged before
+        code, place = mine[row, column].astype(np.float64), (page, row, column)
+        rows.append(compared_numbers("atlas.normal", code, theirs, beside, "atlas.normal", place))
     return rows
+
+
+def _rectangle(case: Case, handed: Handed, image: int) -> TraceRow:
+    """Where an image lies."""
+    mine, theirs = (
+        None if array is None else ", ".join(map(str, np.asarray(array)[image].tolist()))
+        for array in (case.frame.stages["atlas.rects"], handed.get("atlas.rects"))
+    )
+    row = told(f"image {image}: page, x, y, width, height", mine, theirs, array="atlas.rects", index=(image,))
+    return replace(row, element="image")

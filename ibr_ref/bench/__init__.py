@@ -1,0 +1,1 @@
+"""The measurements behind `ibr-ref bench`, and those beside other renderers and comparators."""

@@ -1,0 +1,1 @@
+"""The pictures of `ibr-ref demo`: figures of the papers, from built-in inputs."""

@@ -1,0 +1,31 @@
+"""How far one picture is from another: the measures that reports, benches and reproductions print."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+def psnr(color: NDArray[np.float64], truth: NDArray[np.float64], where: NDArray[np.bool_]) -> float:
+    """Peak signal-to-noise ratio of colours in [0, 1], over all channels of the pixels `where`, decibels."""
+    error = float(((color - truth)[where] ** 2).mean()) if where.any() else 0.0
+    return math.inf if error == 0.0 else -10.0 * math.log10(error)
+
+
+def iou(ours: NDArray[np.float64], theirs: NDArray[np.float64]) -> float:
+    """Intersection over union of where two arrays are >= 0.5; 1 where neither is anywhere."""
+    a, b = ours >= 0.5, theirs >= 0.5
+    union = int((a | b).sum())
+    return float((a & b).sum()) / union if union else 1.0
+
+
+def soft_difference(ours: NDArray[np.float64], theirs: NDArray[np.float64]) -> float:
+    """Mean absolute difference of two shadows (H, W) where either is > 0; 0 where neither is."""
+    import numpy as np
+
+    where = (ours > 0.0) | (theirs > 0.0)
+    return float(np.abs(ours - theirs)[where].mean()) if where.any() else 0.0

@@ -1,0 +1,1 @@
+"""OpenGL 4.5: the extra `ibr_ref[gl]`."""

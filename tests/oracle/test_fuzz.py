@@ -1,0 +1,75 @@
+"""A sample of `python -m tests.oracle.fuzz_submissions`, and every kind of replacement once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ibr_ref import oracle
+from ibr_ref.cli import main
+from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.plugin import PortCase
+from ibr_ref.oracle.verdict import Outcome
+from tests.oracle.fuzz_submissions import BLOCK, Input, complaint, made, replacements, run
+from tests.oracle.tiny_cases import TINY, handed_of
+
+EACH = 6
+
+
+@pytest.mark.parametrize("name", TINY)
+def test_whole_arrays_replaced_are_an_answer_and_never_pass_where_it_shows(name: str) -> None:
+    block = [*TINY].index(name) * (1 + len(TINY) * 2)  # of several profiles
+    first = BLOCK * (block - block % len(TINY) + [*TINY].index(name))
+    inputs = [made(number, 1) for number in range(first, first + EACH)]
+    assert {one.case for one in inputs} == {name}
+    found = [complaint(one) for one in inputs]
+    assert [words for _, words in found if words is not None] == []
+
+
+@pytest.mark.parametrize("change", ["zeros", "constant", "scaled by 1e-4", "moved", "NaN", "1e30", "infinity"])
+@pytest.mark.parametrize("array", ["warp.grid", "warp.row_grids"])
+def test_a_grid_that_covers_nothing(array: str, change: str) -> None:
+    """An IndexError once, and the exit code of FAIL."""
+    case = TINY["shadows-warp"]()
+    handed = handed_of(case)
+    handed[array] = replacements(array, handed[array])[change](handed[array], np.random.default_rng(0))
+    outcome, words = complaint(Input(0, "shadows-warp", {array: change}, handed, "ieee32", True))
+    assert words is None
+    assert outcome in (Outcome.FAIL, Outcome.INCONCLUSIVE)
+
+
+def test_inputs_follow_from_their_numbers() -> None:
+    for number in (3, 777, 10_003):
+        one, again = made(number, 4), made(number, 4)
+        assert (one.case, one.changes, one.profile) == (again.case, again.changes, again.profile)
+        for name in one.handed:
+            np.testing.assert_equal(one.handed[name], again.handed[name])
+    assert {made(BLOCK * i, 0).profile for i in range(len(TINY) * len(PROFILES))} == {*PROFILES}
+    assert len([*run(range(5, 8), 0, 1)]) == 3
+
+
+def test_the_plugin_answers_too(tmp_path: Path) -> None:
+    case = TINY["shadows-warp"]()
+    stages = handed_of(case)
+    picture = {name: stages.pop(name) for name in ("color", "depth")}
+    stages["warp.grid"] = np.zeros_like(stages["warp.grid"])
+    with pytest.raises(pytest.fail.Exception, match="first wrong in stage warp"):
+        PortCase(case, None, tmp_path, tmp_path).check(**picture, stages=stages)
+    assert (tmp_path / "shadows-warp.html").stat().st_size
+
+
+def test_the_command_line_answers_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case, port = TINY["shadows-warp"](), tmp_path / "port"
+    oracle.export(case, tmp_path / "case")
+    port.mkdir()
+    for name, array in handed_of(case).items():
+        np.save(port / f"{name}.npy", np.zeros_like(array) if name == "warp.row_grids" else array)
+    monkeypatch.setattr("sys.argv", ["ibr-ref", "check", str(tmp_path / "case"), str(port)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 1
+    assert "FAIL: shadows-warp, first wrong in stage warp" in capsys.readouterr().out
