@@ -136,5 +136,5 @@ class Referee(Protocol):
 class Explains(Protocol):
     """A judge that names bugs."""
 
-    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...]:
+    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...] | None:
         """The known bugs that leave no element of a wrong stage unexplained."""

@@ -55,8 +55,8 @@ class DisplacementReferee:
         with np.errstate(all="ignore"):
             return trace(case, device, handed, stage, index)
 
-    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...]:
-        """The known bugs that explain a wrong stage."""
+    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...] | None:
+        """The known bugs that explain a wrong stage; None: not looked for, or too many to try."""
         return causes(case, device, handed, wrong)
 
     def parameters(self, case: Case) -> list[Parameter]:

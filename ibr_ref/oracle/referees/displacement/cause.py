@@ -1,7 +1,7 @@
 """Which bug is it: the program of every known one is judged on the port's arrays as the right one is.
 
-A bug is named only if no element contradicts it. Some dozens of elements, right and wrong ones, are tried first; what
-explains them, on all.
+A bug is named only if no element contradicts it, and some that is wrong is certainly explained by it. Some dozens of
+elements, right and wrong ones, are tried first; what explains them, on all.
 """
 
 from __future__ import annotations
@@ -16,28 +16,39 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.referees.displacement.image import Shown, searched
+from ibr_ref.oracle.programs.displacement import Port as Program
+from ibr_ref.oracle.programs.displacement.raster import Raster
+from ibr_ref.oracle.programs.displacement.vertex import Vertex
 from ibr_ref.oracle.referees.displacement.model import Model
-from ibr_ref.oracle.referees.displacement.picture import Picture
 from ibr_ref.oracle.referees.displacement.replay import Port
 from ibr_ref.oracle.referees.displacement.stages import STAGES, Stages
 from ibr_ref.oracle.verdict import Cause
 
-FEW, SOME, EVERY = 6, 40, 97
-"""Wrong elements that are tried first, those that are tried next, and of the right ones each which."""
+FEW, SOME = 6, 40
+"""Wrong elements that are tried first, up to twice as many; and next, with as many right ones."""
+MOST = 8
+"""Suspects that are tried on all elements: where more are left, none is named."""
+
+FACES = frozenset(dir(Vertex)) | frozenset(dir(Raster))
+"""What vertex processing and rasterization call: a program that changes none of it has the right one's fragments."""
 
 
-def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...]:
-    """The bugs that explain every element of a stage.
+def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...] | None:
+    """The bugs that explain every element of a stage; None: not looked for, or too many to try them on all elements.
 
-    Bugs of the stage first, then, where none of them does, those of its neighbours. Of a picture by itself, of all stages.
+    Bugs of the stage first, then, where none of them does, those of its neighbours. None of a picture by itself: the bugs
+    of all stages would be suspects, a second each.
     """
-    off = wrong.wrong.reshape(-1)
-    samples = _samples(off)
+    if wrong.stage not in STAGES:
+        return None
+    suspects = Suspects(case, device, handed, wrong)
     for stages in _suspected(wrong.stage):
         left = [m for m in MUTANTS if m.stage in stages]
-        for sample in samples:
-            left = [m for m in left if not _leaves(case, device, handed, wrong.stage, m.port, sample)]
+        for sample in suspects.samples():
+            left = [m for m in left if suspects.explains(m.port, sample)]
+        if len(left) > MOST:
+            return None
+        left = [m for m in left if suspects.explains(m.port, None)]
         if left:
             return tuple(Cause(name=m.name, says=m.fault) for m in left)
     return ()
@@ -45,34 +56,44 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> tupl
 
 def _suspected(stage: str) -> Sequence[tuple[str, ...]]:
     """Which stages' bugs are suspects, in turn."""
-    if stage == "image":
-        return (STAGES,)
     at = STAGES.index(stage)
     return ((stage,), tuple(s for s in STAGES[max(at - 1, 0) : at + 2] if s != stage))
 
 
-def _samples(off: Bools) -> list[Bools | None]:
-    """A few wrong elements, some with right ones between them, all."""
-    wrong = np.flatnonzero(off)
-    parts: list[Bools | None] = []
-    for count, right in ((FEW, False), (SOME, True)):
-        part = np.zeros(len(off), np.bool_)
-        part[wrong[:: max(1, len(wrong) // count)][: 2 * count]] = True
-        if right:
-            part[::EVERY] = True
-        parts.append(part)
-    return [*parts, None]
+class Suspects:
+    """What the programs of bugs make of a port's stage."""
+
+    def __init__(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> None:
+        self.case, self.device, self.handed = case, device, handed
+        self.stage, self.wrong = wrong.stage, wrong.wrong.reshape(-1)
+        self.right = Stages(Port(model=Model(case, device), handed=handed))
+
+    def samples(self) -> list[Bools | None]:
+        """A few wrong elements, some with right ones among them."""
+        if self.stage in ("vertex", "raster"):  # as soon done for all
+            return []
+        off = np.flatnonzero(self.wrong)
+        on = np.flatnonzero(~self.wrong)
+        few, some = np.zeros((2, len(self.wrong)), np.bool_)
+        few[off[:: max(1, len(off) // FEW)][: 2 * FEW]] = True
+        some[off[:: max(1, len(off) // SOME)][: 2 * SOME]] = True
+        some[on[:: max(1, len(on) // SOME)][: 2 * SOME]] = True
+        return [few, some]
+
+    def explains(self, kind: type[Any], among: Bools | None) -> bool:
+        """Whether a program contradicts no element `among`, and certainly explains a wrong one of them."""
+        stages = Stages(Port(model=Model(self.case, self.device, kind), handed=self.handed, among=among))
+        with np.errstate(all="ignore"):
+            if _draws_the_same_faces(kind):
+                stages.take_fragments(self.right)
+            judgement = stages.judge(self.stage, clean=True)
+        sure = self.wrong & ~judgement.undecided.reshape(-1)
+        if among is not None:
+            sure &= among
+        return bool(not judgement.wrong.any() and sure.any())
 
 
-def _leaves(case: Case, device: Device, handed: Handed, stage: str, kind: type[Any], among: Bools | None) -> int:
-    """How many elements a program does not explain, of those `among`."""
-    model = Model(case, device, kind)
-    with np.errstate(all="ignore"):
-        if stage == "image":
-            picture = Picture(model, among)
-            accepted = searched(picture, Shown.of(picture, handed)).accepted
-            return int((~accepted if among is None else ~accepted & among).sum())
-        if stage in ("vertex", "raster") and among is not None:
-            among = None  # as soon done for all
-        judgement = Stages(Port(model=model, handed=handed, among=among)).judge(stage, clean=True)
-        return int(judgement.wrong.sum())
+def _draws_the_same_faces(kind: type[Any]) -> bool:
+    """Whether nothing is changed that the fragments hang on."""
+    changed = {name for each in kind.__mro__ if not issubclass(Program, each) for name in vars(each)}
+    return not changed & FACES - {"__doc__", "__module__"}

@@ -63,11 +63,11 @@ class Element:
 
     def shade(self, hits: Hits) -> list[TraceRow]:
         """Albedo, normal and light, and the colour of that."""
-        shades = shades_of(self.port.model, hits)
+        shades, _ = shades_of(self.port.model, hits)
         fields = {name: bounded(shade_field(shades, name)) for name in ARRAYS["shade"]}
         found = self._rows(fields, self._likeliest(fields, ("shade.lit",)), not len(shades))
         surfaces = light_input(self.port, hits, shades)
-        _, color = lighted(self.port.model, hits, surfaces)
+        _, color, _ = lighted(self.port.model, hits, surfaces)
         return found + self._colors(bounded(color))
 
     def resolve(self, hits: Hits) -> list[TraceRow]:
@@ -103,7 +103,8 @@ class Element:
 
     @property
     def _background(self) -> Bounded:
-        return bounded([x[None] for x in self.port.model.background])
+        behind: Bounded = bounded([x[None] for x in self.port.model.background])
+        return behind
 
     def _colors(self, color: Bounded) -> list[TraceRow]:
         if not self.port.has("color") or not len(color.value):

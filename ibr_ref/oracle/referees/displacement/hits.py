@@ -133,12 +133,13 @@ def redepthed(model: Model, hits: Hits) -> Number:
         order.append(at)
     where = np.concatenate(order)
     _, first = np.unique(where, return_index=True)
-    return joined(parts)[first]
+    depth: Number = joined(parts)
+    return depth[first]
 
 
-def shades_of(model: Model, hits: Hits) -> Shades:
-    """The legal looks of all kept hits; those of too many are left out, for `lit_by` finds none of them."""
-    parts = []
+def shades_of(model: Model, hits: Hits) -> tuple[Shades, Ints]:
+    """The legal looks of all kept hits, and the pixels of those that have too many."""
+    parts, lost = [], [np.zeros(0, np.int64)]
     kept = np.flatnonzero(hits.kept)
     for polygon, some in _by_polygon(model, hits.polygon[kept]):
 
@@ -152,17 +153,19 @@ def shades_of(model: Model, hits: Hits) -> Shades:
             columns = {name: [model.machine.lanes(x, lane) for x in vector] for name, vector in columns.items()}
             return {**columns, "lit": np.asarray(program.lit(patch, hit))}
 
-        at, found, _ = followed(model, kept[some], run)
+        at, found, many = followed(model, kept[some], run)
+        lost.append(hits.pixel[many])
         parts.append(Shades(pixel=hits.pixel[at], hit=at, **found))
     if not parts:
         nothing, none = np.zeros(0, np.int64), Number(model.machine, np.zeros(0))
-        return Shades(pixel=nothing, hit=nothing, albedo=[none] * 3, normal=[none] * 3, lit=nothing > 0)
-    return Shades.joined(parts)
+        return Shades(pixel=nothing, hit=nothing, albedo=[none] * 3, normal=[none] * 3, lit=nothing > 0), nothing
+    return Shades.joined(parts), np.concatenate(lost)
 
 
-def lighted(model: Model, hits: Hits, shades: Shades) -> tuple[Ints, Vector]:
-    """Colours of shades, and of which shade each is."""
+def lighted(model: Model, hits: Hits, shades: Shades) -> tuple[Ints, Vector, Ints]:
+    """Colours of shades, of which shade each is, and the pixels of those that have too many."""
     index, colors = [np.zeros(0, np.int64)], [[Number(model.machine, np.zeros(0))] * 3]
+    lost = [np.zeros(0, np.int64)]
     for polygon, rows in _by_polygon(model, hits.polygon[shades.hit]):
 
         def run(at: Ints, lane: Ints, polygon: int = polygon) -> dict[str, Any]:
@@ -171,10 +174,11 @@ def lighted(model: Model, hits: Hits, shades: Shades) -> tuple[Ints, Vector]:
             color = model.program.colored(model.patches[polygon], hit, albedo, normal, shades.lit[at])
             return {"color": model.written(color)}
 
-        at, found, _ = followed(model, rows, run)
+        at, found, many = followed(model, rows, run)
+        lost.append(shades.pixel[many])
         index.append(at)
         colors.append(found["color"])
-    return np.concatenate(index), joined(colors)
+    return np.concatenate(index), joined(colors), np.concatenate(lost)
 
 
 def winners_of(model: Model, hits: Hits) -> Winners:

@@ -219,5 +219,4 @@ def hull_width(picture: Picture) -> Floats:
         np.maximum.at(high[:, k], looks.pixel, x.high)
     width = (high - low).max(axis=1)
     width[picture.fragments.pixel[picture.lost]] = 1.0
-    result: Any = np.where(np.isfinite(width), np.clip(width, 0.0, 1.0), np.nan)
-    return result
+    return np.asarray(np.where(np.isfinite(width), np.clip(width, 0.0, 1.0), np.nan), np.float64)

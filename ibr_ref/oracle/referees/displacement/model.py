@@ -63,12 +63,13 @@ class Model:
     def vertices(self) -> dict[str, Number]:
         """The legal corners of all faces, (V, 4) and (V, 3)."""
         machine, program = self.machine, self.program
-        clip = [np.zeros((0, 4)), *(machine.of(quad.clip) for quads in self.quads for quad in quads)]
-        patch = [np.zeros((0, 3))]
+        clip: list[Any] = [np.zeros((0, 4)), *(machine.of(quad.clip) for quads in self.quads for quad in quads)]
+        patch: list[Any] = [np.zeros((0, 3))]
         for each, quads in zip(self.patches, self.quads, strict=True):
             patch += [machine.of(program.written_corners(each, quad)) for quad in quads]
         pairs = (("vertex.clip", clip), ("vertex.patch", patch))
-        return {name: np.concatenate([machine.of(x) for x in parts]) for name, parts in pairs}  # type: ignore[arg-type]
+        joined: Any = np.concatenate  # of numbers it is a number
+        return {name: joined([machine.of(x) for x in parts]) for name, parts in pairs}
 
     @cached_property
     def raster(self) -> Raster:
@@ -147,7 +148,8 @@ class Raster:
     def _corners(self, polygon: int) -> list[Number]:
         """(T, 7) of each corner."""
         triangles = self.triangles[polygon]
-        return [np.stack([vertices[i] for _, vertices in triangles], axis=0) for i in range(3)]
+        stacked: Any = np.stack  # of numbers it is a number
+        return [stacked([vertices[i] for _, vertices in triangles], axis=0) for i in range(3)]
 
 
 def _concatenated(parts: Sequence[Fragments]) -> Fragments:
@@ -155,6 +157,6 @@ def _concatenated(parts: Sequence[Fragments]) -> Fragments:
     if not parts:
         nothing = np.zeros(0, np.int64)
         shapes = {"weights": (0, 3), "rounding": (0, 3), "gradient": (0, 3, 2), "moved": (0,)}
-        empty = {n: np.zeros(shapes[n]) if n in shapes else nothing for n in names}
+        empty: dict[str, Any] = {n: np.zeros(shapes[n]) if n in shapes else nothing for n in names}
         return Fragments(**{**empty, "certain": nothing > 0})
     return Fragments(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names})

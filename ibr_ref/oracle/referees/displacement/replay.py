@@ -143,7 +143,7 @@ def raster_input(port: Port) -> tuple[Points, tuple[str, ...]]:
         row = []
         for quad in each:
             rows = slice(first, first + 4)
-            row.append(Quad(quad.face, patch[rows], clip[rows]))  # type: ignore[arg-type]
+            row.append(Quad(quad.face, patch[rows], clip[rows]))
             first += 4
         own.append(row)
     with np.errstate(all="ignore"):  # a port's vertices may be anything

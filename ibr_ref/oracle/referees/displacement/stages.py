@@ -17,6 +17,7 @@ from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.displacement.drawn_faces import judge_faces, other_faces
 from ibr_ref.oracle.referees.displacement.hits import hits_of, lighted, shades_of
 from ibr_ref.oracle.referees.displacement.replay import (
+    ARRAYS,
     Port,
     light_input,
     march_field,
@@ -50,6 +51,10 @@ class Stages:
     def __init__(self, port: Port) -> None:
         self.port, self.model = port, port.model
 
+    def take_fragments(self, other: Stages) -> None:
+        """Those of a program that draws the same faces."""
+        self._raster = other._raster
+
     def judgements(self) -> Iterator[Judgement]:
         """Of what was handed in, in pipeline order."""
         clean = True
@@ -76,13 +81,16 @@ class Stages:
             points, bare = self._points
             hits, lost = self._marched
             return _picture(port, stage, port.names("raster"), _march(port, hits, bare, points, lost))
-        shown, color = self._lit
+        shown, color, lost = self._lit
         surfaces = self._surfaces
-        lost = self._marched[1] if self._marches else np.zeros(0, np.int64)
+        if self._marches:
+            lost = np.concatenate([lost, self._marched[1]])
+        if not self._whole_shades or stage == "shade":
+            lost = np.concatenate([lost, self._shades[1]])
         if stage == "shade":
             pixel = surfaces.pixel[shown]
             return _picture(
-                port, stage, port.names("march"), _shade(port, self._hits, self._shades, pixel, color, lost)
+                port, stage, port.names("march"), _shade(port, self._hits, self._shades[0], pixel, color, lost)
             )
         verdict = _resolve(port, self._hits, surfaces.hit[shown], color, clean, lost)
         return _picture(port, stage, port.names("march") + port.names("shade"), verdict)
@@ -113,16 +121,20 @@ class Stages:
         return hits if self.port.among is None else hits.take(self.port.among[hits.pixel])
 
     @cached_property
-    def _shades(self) -> Shades:
+    def _shades(self) -> tuple[Shades, Ints]:
         return shades_of(self.model, self._hits)
+
+    @property
+    def _whole_shades(self) -> bool:
+        """Whether the port's own surfaces are all that lighting needs."""
+        return len(self.port.names("shade")) == len(ARRAYS["shade"])
 
     @cached_property
     def _surfaces(self) -> Shades:
-        whole = len(self.port.names("shade")) == 3
-        return light_input(self.port, self._hits, None if whole else self._shades)
+        return light_input(self.port, self._hits, None if self._whole_shades else self._shades[0])
 
     @cached_property
-    def _lit(self) -> tuple[Ints, list[Number]]:
+    def _lit(self) -> tuple[Ints, list[Number], Ints]:
         return lighted(self.model, self._hits, self._surfaces)
 
 
@@ -209,6 +221,16 @@ def _width(pixels: int, pixel: Ints, fields: Sequence[Any]) -> Floats:
     return np.where(np.isfinite(result), result, np.nan)
 
 
+def _boundless(pixels: int, pixel: Ints, fields: Sequence[Any]) -> Bools:
+    """(pixels,) where a result may be anything: that says nothing, and counts as undecided."""
+    result = np.zeros(pixels, np.bool_)
+    for field in fields:
+        for x in field if isinstance(field, list) else [field]:
+            if isinstance(x, Number):
+                result[pixel[np.isinf(x.deviation) & ~np.isnan(x.value)]] = True
+    return result
+
+
 def _several(pixels: int, pixel: Ints) -> Bools:
     """(pixels,) where there is more than one outcome."""
     return np.asarray(np.bincount(pixel, minlength=pixels) > 1, np.bool_)
@@ -224,7 +246,7 @@ def _raster(port: Port, candidates: Points) -> Verdict:
     return Verdict(
         arrays=names,
         wrong=wrong,
-        undecided=perhaps & open_,
+        undecided=(perhaps & open_) | _boundless(port.pixels, candidates.pixel, fields),
         width=_width(port.pixels, candidates.pixel, fields),
         blame=blame,
     )
@@ -240,6 +262,7 @@ def _march(port: Port, hits: Hits, bare: Bools, points: Points, lost: Ints) -> V
     np.minimum.at(least, hits.pixel, hits.hit_index.astype(np.float64))
     np.maximum.at(most, hits.pixel, hits.hit_index.astype(np.float64))
     undecided = most - least > 1
+    undecided |= _boundless(port.pixels, hits.pixel, fields)
     wrong[lost], undecided[lost] = False, True
     width = _width(port.pixels, hits.pixel, fields)
     return Verdict(arrays=names, wrong=wrong & known, undecided=undecided, width=width, blame=blame)
@@ -247,7 +270,9 @@ def _march(port: Port, hits: Hits, bare: Bools, points: Points, lost: Ints) -> V
 
 def _agree(color: list[Number], found: Any, at: Any = slice(None)) -> Bools:
     """Whether colours are legal."""
-    value, error = (np.stack([get(x)[at] for x in color], axis=-1) for get in (lambda x: x.value, lambda x: x.error))
+    some = [x[at] for x in color]
+    value = np.stack([x.value for x in some], axis=-1)
+    error = np.stack([np.broadcast_to(x.deviation, x.shape) for x in some], axis=-1)
     return np.asarray(allows_color(Bounded(value, error, color[0].ops.device), found).all(axis=1), np.bool_)
 
 
@@ -269,11 +294,13 @@ def _shade(port: Port, hits: Hits, shades: Shades, lit_pixel: Ints, color: list[
         blame[dark & ~wrong] = len(names)
         wrong = wrong | dark
         names = (*names, "color")
-    wrong[lost] = False
+    undecided = _several(port.pixels, shades.pixel) | _boundless(port.pixels, shades.pixel, fields)
+    undecided |= _boundless(port.pixels, lit_pixel, [color])
+    wrong[lost], undecided[lost] = False, True
     return Verdict(
         arrays=names,
         wrong=wrong,
-        undecided=_several(port.pixels, shades.pixel),
+        undecided=undecided,
         width=_width(port.pixels, shades.pixel, fields),
         blame=blame,
     )
@@ -323,12 +350,13 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: list[Number], clean: bool
     known[hits.pixel] = True
     known |= nothing
     wrong = ~right & known
-    wrong[lost] = False
+    undecided = _several(port.pixels, pixel) | _boundless(port.pixels, hits.pixel[hits.kept], [hits.depth[hits.kept]])
+    wrong[lost], undecided[lost] = False, True
     wrong[port.picture.fragments.pixel[port.picture.lost]] = False
     return Verdict(
         arrays=names,
         wrong=wrong,
-        undecided=_several(port.pixels, pixel),
+        undecided=undecided,
         width=_width(port.pixels, hits.pixel, [hits.depth]),
         blame=blame,
     )

@@ -69,9 +69,8 @@ def _vector(values: Sequence[float] | Floats) -> str:
 def _row(step: str, legal: Number | Vector, found: Any) -> TraceRow:
     """A result, a number or components, of one element, and what the port has of it."""
     parts = list(legal) if isinstance(legal, list) else [legal]
-    value, error = (
-        np.concatenate([np.ravel(get(x)) for x in parts]) for get in (lambda x: x.value, lambda x: x.deviation)
-    )
+    value = np.concatenate([np.ravel(x.value) for x in parts])
+    error = np.concatenate([np.ravel(np.broadcast_to(x.deviation, x.shape)) for x in parts])
     found = None if found is None else np.ravel(found)
     note = ""
     if found is not None:
@@ -230,7 +229,7 @@ def _handed(port: Port, pixel: int, names: Sequence[str]) -> str:
 
 def _shade(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
     model = port.model
-    shades = shades_of(model, hits)
+    shades, _ = shades_of(model, hits)
     for i in range(len(hits)):
         yield TraceRow(
             step="hit (u, v, h), steep",
@@ -250,7 +249,7 @@ def _shade(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
             yield _row(f"legal: {name}" if name in port.handed else name, _one(legal, i), None)
         yield TraceRow(step="legal: shade.lit", reference=str(bool(shades.lit[i])), port="")
     if not port.names("shade"):
-        _, color = lighted(model, hits, shades)
+        _, color, _ = lighted(model, hits, shades)
         for i in range(len(color[0])):
             yield _row("colour", _one(color, i), None)
 
