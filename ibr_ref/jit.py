@@ -33,6 +33,7 @@ import numba
 from numba import prange
 from numba.core import config as _config
 from numba.core import event
+from platformdirs import user_cache_path
 
 __all__ = ["LANES", "compilations", "device", "functions", "kernel", "prange", "routine", "threads"]
 
@@ -77,18 +78,10 @@ def _digest(room: str) -> str:
     return digest.hexdigest()[:16]
 
 
-def _user_cache() -> Path:
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-
-
 @cache
 def _cache_directory(room: str) -> str:
     """A writable folder for this very version of a room's sources; a temporary one where the user's cache is read-only."""
-    root = Path(config.CACHE_DIR) if config.CACHE_DIR else _user_cache() / "ibr_ref"
+    root = Path(config.CACHE_DIR) if config.CACHE_DIR else user_cache_path("ibr_ref", appauthor=False)
     folder = root / _digest(room)
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -13,13 +13,10 @@ from functools import cache
 from importlib import resources
 from typing import NamedTuple
 
-PAGES = {
-    "displacement": "displacement/method.md",
-    "splatting": "splatting/method.md",
-    "shadows": "shadows/method.md",
-    "conventions": "conventions.md",
-}
-"""Files of the package, by what `ibr-ref method` calls them."""
+from ibr_ref import methods
+
+CONVENTIONS = "conventions"
+"""The page of what all methods share."""
 
 _ONLY = re.compile(r"\A\s*<!-- only: ([a-z0-9_ ]+) -->\n*")
 
@@ -36,10 +33,20 @@ class Section(NamedTuple):
     """Features of which a case needs one; empty: every case needs the section."""
 
 
-@cache
+def names() -> tuple[str, ...]:
+    """The pages, as `ibr-ref method` calls them: one a method, and what all share."""
+    return (*methods.names(), CONVENTIONS)
+
+
 def sections(name: str) -> tuple[Section, ...]:
-    """The sections of a page, in order."""
-    source = resources.files("ibr_ref").joinpath(PAGES[name]).read_text(encoding="utf-8")
+    """The sections of a page, in order. Raises ValueError for a name that is none."""
+    return _read("ibr_ref:conventions.md" if name == CONVENTIONS else methods.named(name).page)
+
+
+@cache
+def _read(place: str) -> tuple[Section, ...]:
+    package, _, file = place.partition(":")
+    source = resources.files(package).joinpath(file).read_text(encoding="utf-8")
     parts = re.split(r"^(#+) (.+)\n", source, flags=re.MULTILINE)[1:]
     return tuple(_section(*parts[i : i + 3]) for i in range(0, len(parts), 3))
 

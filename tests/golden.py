@@ -13,6 +13,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Callable, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -21,17 +22,14 @@ import numpy as np
 from numba.core import config
 from numpy.typing import NDArray
 
-from ibr_ref import jit
+from ibr_ref import jit, methods
 from ibr_ref.io import Frame
 from tests.agreement import flat
-from tests.displacement import golden_scenes as displacement
-from tests.shadows import golden_scenes as shadows
-from tests.splatting import golden_scenes as splatting
 
 GOLDEN = Path(__file__).parents[1] / "data" / "golden.json"
 WIDTH, HEIGHT = 160, 120
 
-METHODS: dict[str, Any] = {"displacement": displacement, "splatting": splatting, "shadows": shadows}
+METHODS: dict[str, Any] = {name: import_module(f"tests.{name}.golden_scenes") for name in methods.names()}
 """Modules with SCENES, TINY (the names of those that can do without compiled kernels) and `render`."""
 
 SCENES: dict[str, Callable[[int, int], tuple[Any, ...]]] = {

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ibr_ref import Light, displacement, pages, shadows, splatting
+from ibr_ref import Light, displacement, methods, pages, shadows, splatting
 from ibr_ref.contract import IMAGE, OWN, StageArray, described, spelled
 from ibr_ref.io import Frame
-from ibr_ref.oracle.schema.stages import CONTRACTS
+from ibr_ref.oracle.schema.stages import contract_of
 from tests.displacement import scenes as polygons
 from tests.oracle.files import cases
 from tests.shadows import scenes as stages
@@ -88,7 +88,7 @@ def equal(found: NDArray[Any], value: Any) -> bool:
 
 def test_what_is_rendered_is_what_the_contract_has(drawn: tuple[str, Frame]) -> None:
     method, frame = drawn
-    contract = CONTRACTS[method]
+    contract = contract_of(method)
     missing = [name for name, entry in contract.items() if name not in frame.stages and not entry.only]
     assert not missing
     assert not set(frame.stages) - set(contract)
@@ -119,7 +119,7 @@ def pictures(contract: Mapping[str, StageArray], frame: Frame) -> dict[str, Stag
 @pytest.mark.parametrize("name", [name for name in FRAMES if name not in COVERED])
 def test_where_nothing_is(name: str) -> None:
     method, frame = FRAMES[name]()
-    contract = CONTRACTS[method]
+    contract = contract_of(method)
     marks: dict[str, Callable[[], NDArray[np.bool_]]] = {
         "displacement": lambda: frame.stages["raster.face"] == -1,
         "splatting": lambda: frame.stages["raster.overdraw"] == 0,
@@ -180,12 +180,12 @@ def test_beside_the_images_of_an_atlas() -> None:
 # --- The pages -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("method", CONTRACTS)
+@pytest.mark.parametrize("method", methods.names())
 def test_the_table_of_the_page_is_the_contract(method: str) -> None:
     (table,) = [section.text for section in pages.sections(method) if section.title == "Arrays"]
     rows = re.findall(r"^\| ([a-z]+(?:\.[a-z_]+)?) \| (.*) \|$", table, re.MULTILINE)
     found = {name: [part.strip() for part in row.split("|")] for name, row in rows if name != "name"}
-    contract = CONTRACTS[method]
+    contract = contract_of(method)
     assert list(found) == list(contract)
     for name, entry in contract.items():
         nothing = entry.nothing_words.split("; also")[0] if entry.nothing is not None else ""

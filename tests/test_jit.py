@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import pytest
+
 from ibr_ref import jit
+
+ROOT = Path(__file__).parents[1]
 
 
 def _rooms(room: str) -> set[str]:
@@ -32,3 +44,84 @@ def test_the_room_is_that_of_the_function_s_module() -> None:
 
 def test_rooms_have_keys_of_their_own() -> None:
     assert len({jit._digest(room) for room in ("", "pipeline", "displacement")}) == 3
+
+
+# --- Names of Numba that it does not promise ---------------------------------------------------------------------------
+
+GONE = "jit.py is built on it: look there before you raise Numba's upper bound in pyproject.toml"
+
+
+@pytest.fixture
+def tripled() -> Any:
+    """A device function of this file, with nothing compiled yet."""
+
+    def triple(x: float) -> float:
+        return 3.0 * x
+
+    return jit.device(triple)
+
+
+def test_the_configuration_has_what_is_set() -> None:
+    from numba.core import config
+
+    for name in ("CACHE_DIR", "DISABLE_JIT", "BOUNDSCHECK"):
+        assert hasattr(config, name), f"numba.core.config.{name}: {GONE}"
+
+
+@pytest.mark.skipif(jit.config.DISABLE_JIT, reason="nothing is compiled")
+def test_a_dispatcher_has_the_methods_that_are_replaced(tripled: Any) -> None:
+    import numba
+
+    for name in ("_insert", "_compile_for_args"):
+        assert callable(getattr(numba.njit(lambda x: x), name, None)), f"{name} of a dispatcher: {GONE}"
+        assert name in vars(tripled), name
+
+
+@pytest.mark.skipif(jit.config.DISABLE_JIT, reason="nothing is compiled")
+def test_a_device_function_answers_to_compiled_code_and_to_python(tripled: Any) -> None:
+    """Without the wrappers that let Python call it: a call from there goes to another compilation."""
+    import numba
+
+    def caller(x: float) -> float:
+        return tripled(x) + 1.0
+
+    assert numba.njit(caller)(2.0) == 7.0
+    assert tripled(2.0) == 6.0, f"the call from Python: {GONE}"
+    assert tripled.targetoptions["no_cpython_wrapper"], f"no_cpython_wrapper: {GONE}"
+    assert tripled.targetoptions["no_cfunc_wrapper"], f"no_cfunc_wrapper: {GONE}"
+
+
+@pytest.mark.skipif(jit.config.DISABLE_JIT, reason="nothing is compiled")
+def test_compilations_are_told_by_name() -> None:
+    import numba
+
+    def counted(x: int) -> int:
+        return x + 1
+
+    names: list[str] = []
+    with jit.compilations(names.append):
+        assert numba.njit(counted)(1) == 2
+    assert names == ["counted"], f"the event numba:compile and its data: {GONE}"
+
+
+def test_numba_s_bound_is_the_next_version_that_nobody_has_tried() -> None:
+    import numba
+    from packaging.requirements import Requirement
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    (wanted,) = [r for r in map(Requirement, project["dependencies"]) if r.name == "numba"]
+    assert {part.operator for part in wanted.specifier} == {">=", "<"}, "numba: an upper bound"
+    assert numba.__version__ in wanted.specifier, GONE
+
+
+def test_kernels_are_kept_in_the_user_s_cache_folder() -> None:
+    code = "from ibr_ref import jit; print(jit._cache_directory('pipeline'))"
+    with TemporaryDirectory() as folder:
+        kept = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
+        homes = {"XDG_CACHE_HOME": folder, "LOCALAPPDATA": folder, "HOME": folder}
+        made = subprocess.run(
+            [sys.executable, "-c", code], env=kept | homes, capture_output=True, text=True, check=True
+        )
+        place = Path(made.stdout.strip())
+        assert place.is_relative_to(folder)
+        assert "ibr_ref" in place.parts

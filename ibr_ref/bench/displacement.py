@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ibr_ref.bench.times import best_and_median
@@ -33,6 +35,15 @@ def _scenes() -> list[tuple[str, Scene, Params]]:
             for steps in (10, 50):
                 result.append((name, scene, displacement.Params(linear_steps=steps)))
     return result
+
+
+READS_MSR = False
+
+
+def measured(repeat: int, msr: Path | None) -> Iterator[tuple[str, list[dict[str, Any]], Any]]:
+    """What `ibr-ref bench` shows: name, rows and table of each measurement, one after the other."""
+    rows = times(repeat)
+    yield "displacement", rows, table(rows)
 
 
 def times(repeat: int) -> list[dict[str, Any]]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ibr_ref.bench.times import best_and_median
@@ -34,6 +35,15 @@ PAPER_KETTLE = {
     "grid, compressed": (5, 8, 11, 25),
 }
 """Tables 2 to 5: the teapot's shadow alone, milliseconds at each size, on a processor and card of 2001."""
+
+
+READS_MSR = False
+
+
+def measured(repeat: int, msr: Path | None) -> Iterator[tuple[str, list[dict[str, Any]], Any]]:
+    """What `ibr-ref bench` shows: name, rows and table of each measurement, one after the other."""
+    rows = times(repeat)
+    yield "shadows", rows, table(rows)
 
 
 def times(repeat: int) -> list[dict[str, Any]]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ibr_ref.bench import splatting_quality
 from ibr_ref.bench.times import best_and_median
 from ibr_ref.progress import progress
 
@@ -24,6 +26,18 @@ PAPER_MPPS = {
 
 RIG_SIZES = {4: 210, 9: 189, 16: 201}
 """Pixels a side at which the references of the kettle have the paper's numbers of points, to 1 %."""
+
+
+READS_MSR = True
+
+
+def measured(repeat: int, msr: Path | None) -> Iterator[tuple[str, list[dict[str, Any]], Any]]:
+    """What `ibr-ref bench` shows: name, rows and table of each measurement, one after the other."""
+    rows = times(repeat, msr)
+    yield "splatting", rows, table(rows)
+    if msr is not None:
+        rows = splatting_quality.views(msr)
+        yield "splatting_quality", rows, splatting_quality.table(rows)
 
 
 def times(repeat: int, msr: Path | None) -> list[dict[str, Any]]:

@@ -13,7 +13,8 @@ from typing import Annotated
 
 import typer
 
-from ibr_ref.cli import bench, check, demo, displacement, export, method, reproduce, shadows, splatting
+from ibr_ref import methods
+from ibr_ref.cli import bench, check, demo, export, method, reproduce
 from ibr_ref.cli.command import Command
 
 _BROKEN_PIPE = 141
@@ -28,9 +29,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 render_app = typer.Typer(no_args_is_help=True, help="Render your own input with one of the methods.")
-render_app.command("displacement", cls=Command, epilog=displacement.EXAMPLES)(displacement.command)
-render_app.command("splatting", cls=Command, epilog=splatting.EXAMPLES)(splatting.command)
-render_app.command("shadows", cls=Command, epilog=shadows.EXAMPLES)(shadows.command)
+for _name, _room in ((each.name, each.command.open()) for each in methods.records() if each.command is not None):
+    render_app.command(_name, cls=Command, epilog=_room.EXAMPLES)(_room.command)
 app.add_typer(render_app, name="render")
 app.command("demo", cls=Command, epilog=demo.EXAMPLES)(demo.command)
 app.command("method", cls=Command, epilog=method.EXAMPLES)(method.command)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from json import dumps
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.bench import displacement, shadows, splatting, splatting_quality
+from ibr_ref import methods
 from ibr_ref.cli import json_output, options
 from ibr_ref.cli.tables import show
 
@@ -24,17 +23,17 @@ Examples:
 """
 
 
-class Method(StrEnum):
-    """What is measured."""
+BENCHES = {method.name: method.bench for method in methods.records() if method.bench is not None}
 
-    all = "all"
-    displacement = "displacement"
-    splatting = "splatting"
-    shadows = "shadows"
+if TYPE_CHECKING:
+    Method = str
+else:
+    Method = options.choices("Method", ("all", *BENCHES), "What is measured.")
+ALL = Method("all")
 
 
 def command(
-    method: Annotated[Method, typer.Argument(help="The method to measure.")] = Method.all,
+    method: Annotated[Method, typer.Argument(help="The method to measure.")] = ALL,
     repeat: Annotated[
         int, typer.Option(parser=options.repeats, help="Frames of each kind, 1 to 1000; the best and the median count.")
     ] = 20,
@@ -54,16 +53,8 @@ def command(
     json_output.check_writable(json)
     aside = json_output.is_standard_output(json)
     figures: dict[str, list[dict[str, Any]]] = {}
-    if method in (Method.all, Method.displacement):
-        figures["displacement"] = displacement.times(repeat)
-        show(displacement.table(figures["displacement"]), error=aside)
-    if method in (Method.all, Method.splatting):
-        figures["splatting"] = splatting.times(repeat, msr)
-        show(splatting.table(figures["splatting"]), error=aside)
-        if msr is not None:
-            figures["splatting_quality"] = splatting_quality.views(msr)
-            show(splatting_quality.table(figures["splatting_quality"]), error=aside)
-    if method in (Method.all, Method.shadows):
-        figures["shadows"] = shadows.times(repeat)
-        show(shadows.table(figures["shadows"]), error=aside)
+    for name in BENCHES if method == ALL else (method,):
+        for what, rows, table in BENCHES[name].open().measured(repeat, msr):
+            figures[what] = rows
+            show(table, error=aside)
     json_output.write(json, dumps(figures, indent=2))

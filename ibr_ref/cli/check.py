@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ibr_ref import methods
 from ibr_ref.cli import json_output
+from ibr_ref.oracle.device import PROFILES
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -27,6 +29,8 @@ Examples:
 Exit code 0: PASS, 1: FAIL, 2: INCONCLUSIVE, or the case or an option is unusable.
 """
 
+_DEVICES, _METHODS = (f"{', '.join(names[:-1])} or {names[-1]}" for names in ([*PROFILES], methods.names()))
+
 
 def command(
     case: Annotated[Path | None, typer.Argument(help="Folder that `ibr-ref export` wrote.", show_default=False)] = None,
@@ -36,9 +40,7 @@ def command(
     ] = None,
     device: Annotated[
         str | None,
-        typer.Option(
-            help="ieee32, d3d11, vulkan, webgpu or gl. Without: port.json's, or the tightest that explains all."
-        ),
+        typer.Option(help=f"{_DEVICES}. Without: port.json's, or the tightest that explains all."),
     ] = None,
     json: Annotated[
         Path | None,
@@ -48,7 +50,7 @@ def command(
     self_test: Annotated[
         bool, typer.Option("--self-test", help="Try the oracle on right ports and on broken ones, and print the table.")
     ] = False,
-    method: Annotated[str | None, typer.Option(help="--self-test: displacement, splatting or shadows alone.")] = None,
+    method: Annotated[str | None, typer.Option(help=f"--self-test: {_METHODS} alone.")] = None,
 ) -> None:
     """Say whether a port's pictures are right, and if not, where they first go wrong."""
     if self_test:

@@ -13,7 +13,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand
 
-from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, Others, table
+from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, Others, rules
 
 
 class Command(TyperCommand):
@@ -27,7 +27,7 @@ class Command(TyperCommand):
 
     def invoke(self, ctx: Any) -> Any:
         """Check what was given, then run."""
-        refuse(table()[path(ctx)], self.params, ctx.params, given(ctx))
+        refuse(rules(path(ctx)), self.params, ctx.params, given(ctx))
         return super().invoke(ctx)
 
 
@@ -45,11 +45,11 @@ def given(ctx: Any) -> set[str]:
     return {name for name in ctx.params if getattr(ctx.get_parameter_source(name), "name", "") == "COMMANDLINE"}
 
 
-def refuse(rules: Mapping[str, Beside], params: list[Any], values: Mapping[str, Any], names: set[str]) -> None:
+def refuse(wanted: Mapping[str, Beside], params: list[Any], values: Mapping[str, Any], names: set[str]) -> None:
     """Raise BadParameter for the first given parameter that is not read beside the values of the others."""
     flags = {param.name: _flag(param) for param in params}
     for param in params:
-        rule = rules[param.name]
+        rule = wanted[param.name]
         if param.name not in names or not rule.alternatives:
             continue
         misses = [list(_missed(alternative, values)) for alternative in rule.alternatives]

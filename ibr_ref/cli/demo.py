@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ibr_ref import methods
 from ibr_ref.cli.tables import show
-from ibr_ref.demo import displacement, shadows, splatting
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -21,8 +21,6 @@ Example:
     ibr-ref demo --out demo
 """
 
-METHODS = (displacement, splatting, shadows)
-
 
 def command(
     out: Annotated[Path, typer.Option(help="Folder for the pictures; made if it is not there.")] = Path("demo"),
@@ -31,21 +29,23 @@ def command(
     from ibr_ref.io.outputs import make_folder
 
     make_folder(out)
-    shown, rows = [], []
-    with progress(sum(method.PICTURES for method in METHODS) + 1) as step:
-        for method in METHODS:
-            for picture in method.pictures():
+    demos = {method: method.demo.open() for method in methods.records() if method.demo is not None}
+    shown: list[tuple[str, Any]] = []
+    rows: dict[methods.Method, list[tuple[Picture, float | None]]] = {method: [] for method in demos}
+    with progress(sum(demo.PICTURES for demo in demos.values()) + 1) as step:
+        for method, demo in demos.items():
+            for picture in demo.pictures():
                 step(picture.caption)
                 color = picture.draw()
                 _save(out / f"{picture.name}.png", color)
                 shown.append((picture.caption, color))
-                rows.append((method.TITLE, picture, _milliseconds(picture)))
+                rows[method].append((picture, _milliseconds(picture)))
         step("contact sheet")
         from ibr_ref.demo.contact_sheet import contact_sheet
 
         _save(out / "contact_sheet.png", contact_sheet(shown, columns=3))
-    for method in METHODS:
-        show(_table(method.TITLE, method.NOTE, [row[1:] for row in rows if row[0] == method.TITLE]))
+    for method, demo in demos.items():
+        show(_table(f"{method.title} ({method.source}), {demo.SIZES}", demo.NOTE, rows[method]))
     typer.echo(f"{len(shown)} pictures and contact_sheet.png are in {out}{'' if str(out).endswith('/') else '/'}")
 
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ibr_ref.cli import emptiness, options
+from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 from ibr_ref.progress import progress
+from ibr_ref.searches import SEARCHES
 
 if TYPE_CHECKING:
     from ibr_ref.scene import BasePolygon
@@ -26,20 +29,11 @@ Examples:
 """
 
 
-class Method(StrEnum):
-    """Search for the hit."""
-
-    protruded = "protruded"
-    exact = "exact"
-    relief = "relief"
-    texture = "texture"
-    welsh = "welsh"
-    mcguire = "mcguire"
-    donnelly = "donnelly"
-    tatarchuk = "tatarchuk"
-    cone = "cone"
-    relaxed_cone = "relaxed_cone"
-    maximum_mipmap = "maximum_mipmap"
+if TYPE_CHECKING:
+    Method = str
+else:
+    Method = options.choices("Method", SEARCHES, "Search for the hit.")
+PROTRUDED = Method("protruded")
 
 
 class Interval(StrEnum):
@@ -110,7 +104,7 @@ def command(
     faces: Annotated[FaceSet, typer.Option(help="Faces of the volume that are drawn.")] = FaceSet.auxiliary,
     method: Annotated[
         Method, typer.Option(help="Search for the hit; from relief on, systems to compare with: shapes sink, not rise.")
-    ] = Method.protruded,
+    ] = PROTRUDED,
     lod_bias: Annotated[
         float, typer.Option(parser=options.number, help="mcguire: level of the mip chain that heights come from.")
     ] = 1.0,
@@ -144,7 +138,7 @@ def command(
             shadow_steps=shadow_steps,
             interval=interval.value,
             faces=faces.value,
-            method=method.value,
+            method=str(method),
             lod_bias=lod_bias,
             min_steps=min_steps,
             max_steps=max_steps,
@@ -209,3 +203,33 @@ def _polygon(
         facade_tile=facade_tile,
         height_scale=height_scale,
     )
+
+
+def goes_with() -> dict[str, Beside]:
+    """Beside which others each option is read."""
+    from ibr_ref.displacement.inputs import READ_BY
+
+    def read(field: str, **others: Any) -> Beside:
+        return Beside(f"others do not read {field}", {"method": READ_BY[field], **others})
+
+    walls = READ_BY["steep_threshold"]
+    return {
+        **{name: read(name) for name in signature(command).parameters if name in READ_BY},
+        **always("out", "height", "color", "invert_height", "height_scale", "eye", "target", "fov", "near", "far"),
+        **always("no_exif", "light", "size", "shadow_steps", "method", "stages"),
+        "normal_height": Beside("it holds both", {"height": ABSENT, "normal": ABSENT}),
+        "normal": Beside("--normal-height holds the normals", {"normal_height": ABSENT}),
+        "facade": read("facade_map"),
+        "facade_tile": Beside("facade_tile is the size of its tiles", {"facade": GIVEN}),
+        "steps": read("linear_steps"),
+        "binary_steps": Beside(
+            "for others binary_steps only number the hits",
+            {"method": READ_BY["binary_steps"]},
+            {"method": "exact", "stages": GIVEN},
+        ),
+        "delta": Beside(
+            "steep_threshold says what is covered by the facade",
+            {"method": walls, "facade": GIVEN},
+            {"method": walls, "stages": GIVEN},
+        ),
+    }

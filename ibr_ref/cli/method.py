@@ -19,15 +19,15 @@ Examples:
 
 def command(
     name: Annotated[
-        str, typer.Argument(metavar="|".join(pages.PAGES), help="A method, or what all share.", show_default=False)
+        str, typer.Argument(metavar="|".join(pages.names()), help="A method, or what all share.", show_default=False)
     ],
 ) -> None:
     """Print what a method does: formulas, stages, every array, ties, and what the paper leaves open.
 
     Rendered on a terminal, plain Markdown in a pipe. The README of an exported case has the part that the case needs.
     """
-    if name not in pages.PAGES:
-        raise typer.BadParameter(f"found {name!r}, allowed: {' | '.join(pages.PAGES)}")
+    if name not in pages.names():
+        raise typer.BadParameter(f"found {name!r}, allowed: {' | '.join(pages.names())}")
     text = pages.page(name)
     from rich.console import Console
 

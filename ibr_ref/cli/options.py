@@ -9,10 +9,18 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable
+from enum import StrEnum
 from functools import wraps
 from typing import Annotated, NamedTuple, TypeVar
 
 import typer
+
+
+def choices(name: str, values: Iterable[str], doc: str) -> type[StrEnum]:
+    """An enumeration of words that another module lists, for Typer; its members are strings."""
+    made: type[StrEnum] = StrEnum(name, {value: value for value in values})  # type: ignore[misc]
+    made.__doc__ = doc
+    return made
 
 
 def _joined(values: Iterable[float]) -> str:

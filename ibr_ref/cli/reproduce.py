@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ibr_ref import methods
+from ibr_ref.cli import options
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -25,39 +25,33 @@ What is done is not done again: start it once more after an interruption, or wit
 """
 
 
-class Paper(StrEnum):
-    """Which."""
+PAPERS = {str(method.paper): method.reproduction for method in methods.records() if method.reproduction is not None}
+WHICH = ", ".join(
+    f"{method.paper} {method.name} ({method.source.rpartition(' ')[0]})"
+    for method in methods.records()
+    if str(method.paper) in PAPERS
+)
 
-    one = "1"
-    two = "2"
-    three = "3"
-    all = "all"
-
-
-METHODS = {Paper.one: "displacement", Paper.two: "splatting", Paper.three: "shadows"}
+if TYPE_CHECKING:
+    Paper = str
+else:
+    Paper = options.choices("Paper", (*PAPERS, "all"), "Which.")
 
 
 def command(
-    paper: Annotated[
-        Paper, typer.Argument(help="1 displacement (Yoo & Han), 2 splatting (Lee & Park), 3 shadows (Kang & Ihm).")
-    ],
+    paper: Annotated[Paper, typer.Argument(help=f"{WHICH}.")],
     out: Annotated[Path, typer.Option(help="Folder of the pages, pictures and JSON.")] = Path("reproduced"),
     again: Annotated[bool, typer.Option("--again", help="Measure anew what is already there.")] = False,
 ) -> None:
     """Measure what a paper's tables and figures show, beside the published values."""
-    wanted = list(METHODS) if paper is Paper.all else [paper]
+    wanted = list(PAPERS) if paper == "all" else [paper]
     from ibr_ref.io.outputs import make_folder
 
     make_folder(out)
-    chosen = [_reproduction(METHODS[one]) for one in wanted]
+    chosen: list[Reproduction] = [PAPERS[one].open() for one in wanted]
     with progress(sum(len(reproduction.steps) for reproduction in chosen)) as step:
         from ibr_ref.reproduce.run import run
 
         pages = [run(reproduction, out, again=again, step=step) for reproduction in chosen]
     for page in pages:
         typer.echo(str(page))
-
-
-def _reproduction(method: str) -> Reproduction:
-    found: Reproduction = import_module(f"ibr_ref.reproduce.{method}").REPRODUCTION
-    return found

@@ -22,12 +22,11 @@ MUTANT_KINDS = ("easy", "typical", "adversarial")
 def run(method: str | None) -> int:
     """Print both tables and the totals; the exit code: 0 if no variant is accused and no mutant unexpectedly survives."""
     from ibr_ref.oracle import self_test
-    from ibr_ref.oracle.cases import METHODS
     from ibr_ref.scene import checks
 
     if method is not None:
-        checks.choice("method", method, METHODS)
-    methods = METHODS if method is None else (method,)
+        checks.choice("method", method, self_test.tried())
+    methods = self_test.tried() if method is None else (method,)
     variants: list[VariantResult] = []
     mutants: list[MutantResult] = []
     with progress(self_test.size(methods)) as step:

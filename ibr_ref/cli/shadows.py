@@ -11,6 +11,7 @@ import typer
 
 from ibr_ref.cli import emptiness, options
 from ibr_ref.cli.command import given
+from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -272,3 +273,33 @@ def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | Non
     if path is not None:
         made.save(path)
     return made
+
+
+def goes_with() -> dict[str, Beside]:
+    """Beside which others each option is read."""
+    from ibr_ref.shadows.inputs import METHODS, READ_BY
+    from ibr_ref.shadows.soft import READ_BY as SOFT
+    from ibr_ref.shadows.soft import SOFT_METHODS
+
+    def warped(name: str) -> Beside:
+        return Beside(f"others do not read {name}", {"method": READ_BY[name]})
+
+    return {
+        **always("out", "caster", "offset", "method", "eye", "target", "near", "far", "size", "report", "stages"),
+        "up": Beside("the built-in horse stands", {"caster": GIVEN}),
+        "samples": Beside("others take the whole light", {"method": METHODS}),
+        "light_size": Beside(
+            "light_size is that of more than its centre", {"method": SOFT_METHODS}, {"samples": (5, 9)}
+        ),
+        "map_size": Beside("rays need no map_size", {"method": (*METHODS, *SOFT["map_size"])}),
+        "map_samples": Beside(
+            "map_samples count coverage", {"method": METHODS, "content": "mask"}, {"method": SOFT["map_samples"]}
+        ),
+        "content": Beside("others do not read content", {"method": METHODS}),
+        "rows": warped("rows"),
+        "columns": warped("columns"),
+        "policy": warped("policy"),
+        "interpolation": warped("interpolation"),
+        "controls": Beside("no others have control points", {"method": "warp"}),
+        "maps": Beside("no others are made beforehand", {"method": "warp"}),
+    }

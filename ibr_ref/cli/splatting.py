@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ibr_ref.cli import emptiness, options
+from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -275,3 +276,29 @@ def _camera(
     camera = Camera.look_at(eye=at, target=center, up=up, vertical_fov=fov, width=size.width, height=size.height)
     corners = [[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
     return camera.fitted(corners, near=near, far=far)
+
+
+def goes_with() -> dict[str, Beside]:
+    """Beside which others each option is read."""
+    from ibr_ref.splatting.inputs import READ_BY
+
+    one = "there is one source of references"
+    photographs, camera = "it is about photographs", "the view is that of a camera of the data set"
+    of_shape = {
+        name: Beside(f"others do not read {name}", {"shape": READ_BY[name]})
+        for name in ("min_width", "footprint", "low_pass", "cutoff", "depth_tolerance")
+    }
+    return {
+        **always("out", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),
+        **of_shape,
+        "msr": Beside(one, {"simple_texture": ABSENT, "mesh": ABSENT}),
+        "simple_texture": Beside(one, {"msr": ABSENT, "mesh": ABSENT}),
+        "mesh": Beside(one, {"msr": ABSENT, "simple_texture": ABSENT}),
+        **{name: Beside(photographs, {"msr": GIVEN}) for name in ("cameras", "view", "frame")},
+        **{
+            name: Beside("reference images are made of a mesh", {"mesh": GIVEN}) for name in ("count", "reference_size")
+        },
+        **{name: Beside(camera, {"msr": ABSENT}) for name in ("eye", "target", "up", "fov", "size")},
+        "law": Beside("ellipses have no law, and a law is given or fitted", {"shape": READ_BY["alpha"], "fit": ABSENT}),
+        "fit": Beside("ellipses have no law, and a law is given or fitted", {"shape": READ_BY["alpha"], "law": ABSENT}),
+    }

@@ -10,7 +10,7 @@ from ibr_ref.demo.picture import SIZE, Picture
 if TYPE_CHECKING:
     from ibr_ref.displacement import Params, Scene
 
-TITLE = "Protruded displacement mapping (Yoo & Han 2006), 640 x 480"
+SIZES = "640 x 480"
 NOTE = "paper: GeForce 6600GT with 50 linear steps; `ibr-ref bench` measures with more care"
 PICTURES = 12
 

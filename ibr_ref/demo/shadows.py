@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from ibr_ref.shadows import Maps, Params, Scene
 
-TITLE = "Shadows by image warping (Kang & Ihm 2002), 640 x 480, maps of 512 x 512"
+SIZES = "640 x 480, maps of 512 x 512"
 NOTE = "paper: table 1 for whole frames, table 5 for nine samples; `ibr-ref bench` measures with more care"
 PICTURES = 8
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ibr_ref.scene import Camera
     from ibr_ref.splatting import Params, Scene
 
-TITLE = "Splatting of depth images (Lee & Park 2006), 640 x 480"
+SIZES = "640 x 480"
 NOTE = "paper: GeForce 7800GTX, tables 1 and 2, as many points; `ibr-ref bench` measures with more care"
 PICTURES = 10
 

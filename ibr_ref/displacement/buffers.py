@@ -58,7 +58,7 @@ class Settings(NamedTuple):
     """Parameters of the search as the kernels see them."""
 
     method: int
-    """Index into `inputs.METHODS`."""
+    """Index into `fragment.BUILT_IN`; -1: another search has found the hits."""
     volume: bool
     """interval="volume"."""
     bounded: bool

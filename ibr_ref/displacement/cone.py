@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.displacement.below import keep, view_ray
+from ibr_ref.displacement.cones import cone_ratios
+from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch
 
@@ -42,3 +44,10 @@ def cone_search(repeat, points, eye, texels, ratios, columns, rows, steps, found
     """Hits of all pixels. steps: N."""
     for pixel in prange(len(fetches)):
         _trace(repeat, points, pixel, eye, texels, ratios, columns, rows, steps, found, fetches)
+
+
+def search(s: Sought) -> None:
+    """Hits of a polygon."""
+    texels, columns, rows = s.height
+    ratios = cone_ratios(s, relaxed=False)
+    cone_search(s.repeat, s.points, s.constants.eye, texels, ratios, columns, rows, s.params.linear_steps, *s.found)

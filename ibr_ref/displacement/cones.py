@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.displacement.below import in_domain
+from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch
 
@@ -137,4 +138,12 @@ def cone_map(heights: NDArray[np.float64], repeat: bool, relaxed: bool) -> NDArr
         True if repeat else None, True if relaxed else None, heights.reshape(-1), float(columns), float(rows),
         maxima.reshape(-1), maxima.shape[0], maxima.shape[1], ratios.reshape(-1),
     )  # fmt: skip
+    return ratios
+
+
+def cone_ratios(s: Sought, relaxed: bool) -> NDArray[np.float64]:
+    """The cone map of a polygon, flat."""
+    ratios: NDArray[np.float64] = s.prepared(
+        ("cones", relaxed), lambda: cone_map(s.heights, s.repeat is not None, relaxed).reshape(-1)
+    )
     return ratios

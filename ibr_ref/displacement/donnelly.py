@@ -12,11 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.displacement.below import keep, view_ray
+from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import clamped, footprint, lerp
-
-MOST_VOXELS = 2**26
-"""Of a distance texture: half a gigabyte."""
 
 
 def distance_texture(heights: NDArray[np.float64], layers: int, repeat: bool) -> NDArray[np.float64]:
@@ -74,3 +72,13 @@ def donnelly_search(repeat, points, eye, texels, columns, rows, layers, steps, f
     """Hits of all pixels. texels: the distance texture, flat; steps: N."""
     for pixel in prange(len(fetches)):
         _trace(repeat, points, pixel, eye, texels, columns, rows, layers, steps, found, fetches)
+
+
+def search(s: Sought) -> None:
+    """Hits of a polygon."""
+    layers, repeat = s.params.distance_layers, s.repeat is not None
+    texels = s.prepared(("distances", layers), lambda: distance_texture(s.heights, layers, repeat).reshape(-1))
+    donnelly_search(
+        s.repeat, s.points, s.constants.eye, texels, s.height.columns, s.height.rows, layers, s.params.linear_steps,
+        *s.found,
+    )  # fmt: skip

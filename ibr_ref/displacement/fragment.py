@@ -33,6 +33,8 @@ from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, fill_depth, fill_varyings
 
+BUILT_IN = ("protruded", "exact", "relief", "texture")
+"""Searches that this kernel has; the hits of others are found before (`compared`)."""
 PROTRUDED, EXACT, RELIEF, TEXTURE = range(4)
 
 BAND_PIXELS = 4096

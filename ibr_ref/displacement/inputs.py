@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -9,24 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ibr_ref.scene import BasePolygon, Camera, Light, checks
+from ibr_ref.searches import SEARCHES, read_by
 
-COMPARED = ("welsh", "mcguire", "donnelly", "tatarchuk", "cone", "relaxed_cone", "maximum_mipmap")
+METHODS = tuple(SEARCHES)
+COMPARED = tuple(name for name, search in SEARCHES.items() if search.room is not None)
 """Systems with a kernel of their own (`compared`)."""
-METHODS = ("protruded", "exact", "relief", "texture", *COMPARED)
-_OWN = ("protruded", "exact")
-READ_BY: dict[str, tuple[str, ...]] = {
-    "linear_steps": (*_OWN, "relief", "mcguire", "donnelly", "cone", "relaxed_cone"),
-    "binary_steps": ("protruded", "relief", "relaxed_cone"),
-    "steep_threshold": _OWN,
-    "facade_map": _OWN,
-    "interval": _OWN,
-    "faces": _OWN,
-    "depth": tuple(name for name in METHODS if name != "welsh"),
-    "lod_bias": ("mcguire",),
-    "min_steps": ("tatarchuk",),
-    "max_steps": ("tatarchuk",),
-    "distance_layers": ("donnelly",),
-}
+READ_BY = read_by()
 """Fields that only some methods read, and these: for the others the picture and the hits do not depend on them. (The
 numbers of hits, `march.hit_index`, are of the lattice N 2^M for "exact" and "texture" too.)"""
 
@@ -39,6 +28,9 @@ MOST_LATTICE = 2**24
 
 MOST_STEPS = 2**16
 """Of a search whose steps depend on the view's angle."""
+
+MOST_VOXELS = 2**26
+"""Of a distance texture: half a gigabyte."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -122,7 +114,7 @@ class Params:
     @property
     def drawn_faces(self) -> str:
         """`faces`, but the compared systems march on the base face alone."""
-        return self.faces if self.method in ("protruded", "exact") else "base"
+        return self.faces if self.method in READ_BY["faces"] else "base"
 
 
 def check(scene: Scene, params: Params) -> None:
@@ -130,6 +122,10 @@ def check(scene: Scene, params: Params) -> None:
     for i, polygon in enumerate(scene.polygons):
         if polygon.domain == "repeat" and params.drawn_faces != "base":
             raise checks.reject("faces", params.faces, f'base (polygons[{i}].domain is "repeat")')
+        shape = np.shape(polygon.height_map)
+        if params.method in READ_BY["distance_layers"] and params.distance_layers * math.prod(shape) > MOST_VOXELS:
+            allowed = f"at most {MOST_VOXELS} voxels, layers x the height map's texels {shape}"
+            raise checks.reject("distance_layers", params.distance_layers, allowed)
 
 
 def check_eye(params: Params, eye: ArrayLike) -> None:

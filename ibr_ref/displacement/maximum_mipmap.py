@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.displacement.below import keep, view_ray
 from ibr_ref.displacement.exact import clip_unit, next_line, upward_crossing
+from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch
 
@@ -149,3 +150,9 @@ def maximum_mipmap_search(repeat, points, eye, texels, columns, rows, tree, foun
     """Hits of all pixels."""
     for pixel in prange(len(fetches)):
         _trace(repeat, points, pixel, eye, texels, columns, rows, tree, found, fetches)
+
+
+def search(s: Sought) -> None:
+    """Hits of a polygon."""
+    tree = s.prepared(("quadtree",), lambda: build(s.heights, s.repeat is not None))
+    maximum_mipmap_search(s.repeat, s.points, s.constants.eye, *s.height, tree, *s.found)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.displacement.below import border, distance_to_eye, in_domain, keep, view_ray
+from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch, lerp
 
@@ -98,3 +99,10 @@ def mcguire_search(repeat, points, constants, fine, coarse, share, steps, found,
     """Hits of all pixels. steps: N."""
     for pixel in prange(len(fetches)):
         _march(repeat, points, pixel, constants, fine, coarse, share, steps, found, fetches)
+
+
+def search(s: Sought) -> None:
+    """Hits of a polygon."""
+    chain = s.prepared(("mips",), lambda: mip_chain(s.heights))
+    levels = levels_at(chain, s.params.lod_bias)
+    mcguire_search(s.repeat, s.points, s.constants, *levels, s.params.linear_steps, *s.found)

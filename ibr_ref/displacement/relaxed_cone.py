@@ -11,6 +11,8 @@ import numpy as np
 
 from ibr_ref.displacement.below import border, keep, sample, view_ray
 from ibr_ref.displacement.cone import cone_steps
+from ibr_ref.displacement.cones import cone_ratios
+from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 
 
@@ -42,3 +44,13 @@ def relaxed_cone_search(
     """Hits of all pixels. steps, halvings: N and M."""
     for pixel in prange(len(fetches)):
         _trace(repeat, points, pixel, eye, texels, ratios, columns, rows, steps, halvings, found, fetches)
+
+
+def search(s: Sought) -> None:
+    """Hits of a polygon."""
+    texels, columns, rows = s.height
+    ratios = cone_ratios(s, relaxed=True)
+    relaxed_cone_search(
+        s.repeat, s.points, s.constants.eye, texels, ratios, columns, rows, s.params.linear_steps,
+        s.params.binary_steps, *s.found,
+    )  # fmt: skip

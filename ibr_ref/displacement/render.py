@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ibr_ref.displacement import compared, inputs
 from ibr_ref.displacement.buffers import Settings
 from ibr_ref.displacement.contract import FRAGMENT_FIELDS
-from ibr_ref.displacement.fragment import Map, Maps, draw
+from ibr_ref.displacement.fragment import BUILT_IN, Map, Maps, draw
 from ibr_ref.displacement.inputs import Params, Scene
 from ibr_ref.displacement.maxima import Maxima, build
 from ibr_ref.displacement.patch_space import uniforms
@@ -20,6 +20,7 @@ from ibr_ref.io import Frame
 from ibr_ref.pipeline.clip import clip_triangles
 from ibr_ref.pipeline.triangles import set_up
 from ibr_ref.scene import BasePolygon
+from ibr_ref.searches import SEARCHES
 
 
 def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -> Frame:
@@ -45,9 +46,10 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
         keep = True if stages else None
         settings = _settings(params, polygon)
         maps, hits = _maps(polygon), None
-        if params.method in inputs.COMPARED:
+        room = SEARCHES[params.method].room
+        if room is not None:
             hits, counts = compared.search(
-                params, polygon, maps.height, constants[patch_id], triangles, camera.width, camera.height
+                room, params, polygon, maps.height, constants[patch_id], triangles, camera.width, camera.height
             )  # fmt: skip
             fetches.append(counts)
         draw(
@@ -64,8 +66,9 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
 
 def _settings(params: Params, polygon: BasePolygon) -> Settings:
     volume = params.interval == "volume" and params.drawn_faces == "auxiliary"
+    search = SEARCHES[params.method]
     return Settings(
-        method=inputs.METHODS.index(params.method),
+        method=BUILT_IN.index(params.method) if params.method in BUILT_IN else -1,
         volume=volume,
         bounded=polygon.domain == "clip" and not volume,
         linear_steps=params.linear_steps,
@@ -73,9 +76,8 @@ def _settings(params: Params, polygon: BasePolygon) -> Settings:
         steep_threshold=params.steep_threshold,
         shadow_steps=params.shadow_steps,
         shadow_bias=params.shadow_bias,
-        floor=0.0 if params.method in ("protruded", "exact", "texture", "welsh") else -1.0,
-        # Welsh's offsets displace nothing.
-        polygon_depth=params.depth == "polygon" or params.method == "welsh",
+        floor=-1.0 if search.sinks else 0.0,
+        polygon_depth=params.depth == "polygon" or not search.displaces,
     )
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.displacement.below import border, distance_to_eye, in_domain, keep, view_ray
+from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch
 
@@ -56,3 +57,8 @@ def tatarchuk_search(repeat, points, constants, texels, columns, rows, least, mo
     """Hits of all pixels. least, most: n_min and n_max."""
     for pixel in prange(len(fetches)):
         _march(repeat, points, pixel, constants, texels, columns, rows, least, most, found, fetches)
+
+
+def search(s: Sought) -> None:
+    """Hits of a polygon."""
+    tatarchuk_search(s.repeat, s.points, s.constants, *s.height, s.params.min_steps, s.params.max_steps, *s.found)

@@ -7,6 +7,7 @@ never exceeds the height itself. Nothing is displaced: the hit lies on the polyg
 from __future__ import annotations
 
 from ibr_ref.displacement.below import distance_to_eye, keep, view_ray
+from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch
 
@@ -27,3 +28,8 @@ def welsh_search(repeat, points, constants, texels, columns, rows, found, fetche
     """Offsets of all pixels."""
     for pixel in prange(len(fetches)):
         _offset(repeat, points, pixel, constants, texels, columns, rows, found, fetches)
+
+
+def search(s: Sought) -> None:
+    """Offsets of a polygon."""
+    welsh_search(s.repeat, s.points, s.constants, *s.height, *s.found)

@@ -1,12 +1,15 @@
 """Devices: what an API's specification lets a correct port do differently, each number with the clause that grants it.
 
-`PROFILES` are ordered from the tightest to the loosest; a port that one of them explains is right. Errors are relative, in
-units of 2^-24 (half a unit in the last place of a float32, the error of one correct rounding).
+A port that one of `PROFILES` explains is right. Their ranks say which of two counts as the tighter one. Errors are relative,
+in units of 2^-24 (half a unit in the last place of a float32, the error of one correct rounding).
+
+A further profile is a call of `_device` here: options, help, READMEs and trials know it then.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
+from typing import Any
 
 UNIT = 2.0**-24
 """Largest relative error of one correct rounding to float32: IEEE 754-2019, section 4.3.1, 24 significant bits."""
@@ -20,6 +23,10 @@ class Device:
     """The freedom of one profile. Products may be fused into sums, and sums taken in any order, under every profile."""
 
     name: str
+    rank: int
+    """The lower, the tighter: of the profiles that explain a port the verdict names the one of the lowest rank."""
+    likely: bool
+    """Explains most right ports that have stages: it is tried before the loosest."""
     operation: float
     """Relative error of +, - and *, in units of 2^-24."""
     quotient: float
@@ -50,17 +57,22 @@ class Device:
     sources: dict[str, str] = field(default_factory=dict)
     """For each number the clause that grants it."""
 
-    def __post_init__(self) -> None:
-        missing = {f.name for f in fields(self)} - {"name", "sources"} - set(self.sources)
-        if missing:
-            raise ValueError(
-                f"sources: {self.name} states no source for {sorted(missing)}, allowed: one for every number"
-            )
-
     @property
     def snap(self) -> float:
         """How far a snapped position may lie from where the reference's lies, in pixels, besides its own rounding."""
         return 2.0**-self.subpixel_bits if self.subpixel_any else 0.0
+
+
+_DEVICES: list[Device] = []
+
+
+def _device(name: str, *, rank: int, likely: bool = False, **granted: tuple[float, str]) -> Device:
+    """A profile. granted: for each field its number, and the clause that grants it."""
+    numbers: dict[str, Any] = {key: number for key, (number, _) in granted.items()}
+    sources = {key: source for key, (_, source) in granted.items()}
+    device = Device(name=name, rank=rank, likely=likely, sources=sources, **numbers)
+    _DEVICES.append(device)
+    return device
 
 
 _OPENGL = "OpenGL 4.6, Floating-Point Computation: accurate to about 1 part in 10^5 (GLSL 4.60 is tighter)"
@@ -69,165 +81,111 @@ _WGSL = "WGSL, section 15.7.4 (accuracy of concrete floating point expressions)"
 _D3D = "Direct3D 11.3 functional specification"
 _CENTRE = "the unsnapped centre lies up to half a step from the snapped one"
 
-IEEE32 = Device(
-    name="ieee32",
-    operation=1.0,
-    quotient=1.0,
-    root=1.0,
-    logarithm=1.0,
-    exponential=1.0,
-    weight_step=0.0,
-    subpixel_bits=8,
-    subpixel_any=False,
-    unsnapped=False,
-    splat_border=0.0,
-    minus_one=False,
-    depth_step=0.0,
-    byte=0.5,
-    sources={
-        "operation": "IEEE 754-2019, 4.3: correctly rounded",
-        "quotient": "IEEE 754-2019, 5.4.1: division is correctly rounded",
-        "root": "IEEE 754-2019, 5.4.1: squareRoot is correctly rounded",
-        "logarithm": "IEEE 754-2019, 9.2: log2 is correctly rounded",
-        "exponential": "IEEE 754-2019, 9.2: exp2 is correctly rounded",
-        "weight_step": "a filter written out in float32 arithmetic",
-        "subpixel_bits": "the conventions of this reference: 1/256 pixel",
-        "subpixel_any": "the conventions of this reference: nearest, ties to even",
-        "unsnapped": "the conventions of this reference: barycentrics of the snapped positions",
-        "splat_border": "the conventions of this reference: only the centre is snapped, the width is not",
-        "minus_one": "the conventions of this reference: 0 <= z <= w",
-        "depth_step": "IEEE 754-2019: a float32 depth buffer",
-        "byte": "the conventions of this reference: floor(255 c + 0.5)",
-    },
+IEEE32 = _device(
+    "ieee32",
+    rank=10,
+    likely=True,
+    operation=(1.0, "IEEE 754-2019, 4.3: correctly rounded"),
+    quotient=(1.0, "IEEE 754-2019, 5.4.1: division is correctly rounded"),
+    root=(1.0, "IEEE 754-2019, 5.4.1: squareRoot is correctly rounded"),
+    logarithm=(1.0, "IEEE 754-2019, 9.2: log2 is correctly rounded"),
+    exponential=(1.0, "IEEE 754-2019, 9.2: exp2 is correctly rounded"),
+    weight_step=(0.0, "a filter written out in float32 arithmetic"),
+    subpixel_bits=(8, "the conventions of this reference: 1/256 pixel"),
+    subpixel_any=(False, "the conventions of this reference: nearest, ties to even"),
+    unsnapped=(False, "the conventions of this reference: barycentrics of the snapped positions"),
+    splat_border=(0.0, "the conventions of this reference: only the centre is snapped, the width is not"),
+    minus_one=(False, "the conventions of this reference: 0 <= z <= w"),
+    depth_step=(0.0, "IEEE 754-2019: a float32 depth buffer"),
+    byte=(0.5, "the conventions of this reference: floor(255 c + 0.5)"),
 )
 
-D3D11 = Device(
-    name="d3d11",
-    operation=2.0,
-    quotient=2.0,
-    root=2.0,
-    logarithm=8.0,
-    exponential=8.0,
-    weight_step=2.0**-8,
-    subpixel_bits=8,
-    subpixel_any=True,
-    unsnapped=False,
-    splat_border=1.1 * 2.0**-8,
-    minus_one=False,
-    depth_step=2.0**-24,
-    byte=0.6,
-    sources={
-        "operation": "Microsoft, Floating-point rules (Direct3D 11): +, -, * may be truncated, within 1 ULP",
-        "quotient": f"{_D3D}, floating point rules: division within 1 ULP",
-        "root": f"{_D3D}, floating point rules: square root within 1 ULP",
-        "logarithm": f"{_D3D}, log instruction: absolute error 2^-21 within [0.5, 2], relative 2^-21 beyond",
-        "exponential": f"{_D3D}, exp instruction: relative error 2^-21",
-        "weight_step": f"{_D3D}, texture addressing: 8 fractional bits of filter weights",
-        "subpixel_bits": f"{_D3D}, rasterizer: 16.8 fixed point window positions",
-        "subpixel_any": f"{_D3D}, conversion to fixed point: within 0.6 ULP of the target",
-        "unsnapped": f"{_D3D}, rasterizer: vertices are snapped before the triangle is set up",
-        "splat_border": f"{_D3D}, 3.2.4.1: a quad's corners within 0.6 steps; {_CENTRE}",
-        "minus_one": f"{_D3D}, clipping: 0 <= z <= w",
-        "depth_step": f"{_D3D}, formats: D24_UNORM_S8_UINT",
-        "byte": f"{_D3D}, conversion of floats to UNORM: within 0.6 ULP",
-    },
+D3D11 = _device(
+    "d3d11",
+    rank=20,
+    likely=True,
+    operation=(2.0, "Microsoft, Floating-point rules (Direct3D 11): +, -, * may be truncated, within 1 ULP"),
+    quotient=(2.0, f"{_D3D}, floating point rules: division within 1 ULP"),
+    root=(2.0, f"{_D3D}, floating point rules: square root within 1 ULP"),
+    logarithm=(8.0, f"{_D3D}, log instruction: absolute error 2^-21 within [0.5, 2], relative 2^-21 beyond"),
+    exponential=(8.0, f"{_D3D}, exp instruction: relative error 2^-21"),
+    weight_step=(2.0**-8, f"{_D3D}, texture addressing: 8 fractional bits of filter weights"),
+    subpixel_bits=(8, f"{_D3D}, rasterizer: 16.8 fixed point window positions"),
+    subpixel_any=(True, f"{_D3D}, conversion to fixed point: within 0.6 ULP of the target"),
+    unsnapped=(False, f"{_D3D}, rasterizer: vertices are snapped before the triangle is set up"),
+    splat_border=(1.1 * 2.0**-8, f"{_D3D}, 3.2.4.1: a quad's corners within 0.6 steps; {_CENTRE}"),
+    minus_one=(False, f"{_D3D}, clipping: 0 <= z <= w"),
+    depth_step=(2.0**-24, f"{_D3D}, formats: D24_UNORM_S8_UINT"),
+    byte=(0.6, f"{_D3D}, conversion of floats to UNORM: within 0.6 ULP"),
 )
 
-VULKAN = Device(
-    name="vulkan",
-    operation=1.0,
-    quotient=5.0,
-    root=9.0 + 2.0**-18,
-    logarithm=8.0,
-    exponential=6.0,
-    weight_step=2.0**-8,
-    subpixel_bits=8,
-    subpixel_any=True,
-    unsnapped=False,
-    splat_border=1.5 * 2.0**-8,
-    minus_one=False,
-    depth_step=2.0**-24,
-    byte=1.0,
-    sources={
-        "operation": f"{_VULKAN}: OpFAdd, OpFSub, OpFMul correctly rounded",
-        "quotient": f"{_VULKAN}: OpFDiv 2.5 ULP",
-        "root": f"{_VULKAN}: sqrt inherited from 1.0 / inversesqrt, 2 ULP and 2.5 ULP",
-        "logarithm": f"{_VULKAN}: log2 3 ULP, absolute 2^-21 within [0.5, 2]; pow inherited from exp2(y log2(x))",
-        "exponential": f"{_VULKAN}: exp2 3 + 2 |x| ULP",
-        "weight_step": "Vulkan 1.3, limits: subTexelPrecisionBits, 8 on desktop implementations (at least 4)",
-        "subpixel_bits": "Vulkan 1.3, limits: subPixelPrecisionBits, 8 on desktop implementations (at least 4)",
-        "subpixel_any": "Vulkan 1.3, Rasterization: the rounding to subPixelPrecisionBits is not specified",
-        "unsnapped": "Vulkan 1.3, Basic Polygon Rasterization: interpolation by the areas of the rasterized polygon",
-        "splat_border": f"Vulkan 1.3, Rasterization: a quad's corners at either neighbour on the raster; {_CENTRE}",
-        "minus_one": "Vulkan 1.3, Primitive Clipping: 0 <= z <= w",
-        "depth_step": "Vulkan 1.3, Formats: VK_FORMAT_D24_UNORM_S8_UINT, X8_D24",
-        "byte": "Vulkan 1.3, Fixed-Point Data Conversions: they may give either neighbour (the nearest is preferred)",
-    },
+VULKAN = _device(
+    "vulkan",
+    rank=30,
+    operation=(1.0, f"{_VULKAN}: OpFAdd, OpFSub, OpFMul correctly rounded"),
+    quotient=(5.0, f"{_VULKAN}: OpFDiv 2.5 ULP"),
+    root=(9.0 + 2.0**-18, f"{_VULKAN}: sqrt inherited from 1.0 / inversesqrt, 2 ULP and 2.5 ULP"),
+    logarithm=(8.0, f"{_VULKAN}: log2 3 ULP, absolute 2^-21 within [0.5, 2]; pow inherited from exp2(y log2(x))"),
+    exponential=(6.0, f"{_VULKAN}: exp2 3 + 2 |x| ULP"),
+    weight_step=(2.0**-8, "Vulkan 1.3, limits: subTexelPrecisionBits, 8 on desktop implementations (at least 4)"),
+    subpixel_bits=(8, "Vulkan 1.3, limits: subPixelPrecisionBits, 8 on desktop implementations (at least 4)"),
+    subpixel_any=(True, "Vulkan 1.3, Rasterization: the rounding to subPixelPrecisionBits is not specified"),
+    unsnapped=(False, "Vulkan 1.3, Basic Polygon Rasterization: interpolation by the areas of the rasterized polygon"),
+    splat_border=(
+        1.5 * 2.0**-8,
+        f"Vulkan 1.3, Rasterization: a quad's corners at either neighbour on the raster; {_CENTRE}",
+    ),
+    minus_one=(False, "Vulkan 1.3, Primitive Clipping: 0 <= z <= w"),
+    depth_step=(2.0**-24, "Vulkan 1.3, Formats: VK_FORMAT_D24_UNORM_S8_UINT, X8_D24"),
+    byte=(1.0, "Vulkan 1.3, Fixed-Point Data Conversions: they may give either neighbour (the nearest is preferred)"),
 )
 
-WEBGPU = Device(
-    name="webgpu",
-    operation=1.0,
-    quotient=5.0,
-    root=9.0 + 2.0**-18,
-    logarithm=8.0,
-    exponential=6.0,
-    weight_step=2.0**-8,
-    subpixel_bits=8,
-    subpixel_any=True,
-    unsnapped=True,
-    splat_border=1.5 * 2.0**-8,
-    minus_one=False,
-    depth_step=2.0**-24,
-    byte=1.0,
-    sources={
-        "operation": f"{_WGSL}: x + y, x - y, x * y correctly rounded",
-        "quotient": f"{_WGSL}: x / y 2.5 ULP",
-        "root": f"{_WGSL}: sqrt inherited from 1.0 / inverseSqrt, 2 ULP and 2.5 ULP",
-        "logarithm": f"{_WGSL}: log2 3 ULP, absolute 2^-21 within [0.5, 2]; pow inherited from exp2(y * log2(x))",
-        "exponential": f"{_WGSL}: exp2 3 + 2 |x| ULP",
-        "weight_step": "WebGPU leaves filtering to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan",
-        "subpixel_bits": "WebGPU leaves it to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan",
-        "subpixel_any": "WebGPU, Rasterization: gives no rounding of positions",
-        "unsnapped": "WebGPU, Rasterization: interpolation by barycentric coordinates, the positions' precision not said",
-        "splat_border": f"WebGPU, Rasterization: a quad's corners as any positions; {_CENTRE}",
-        "minus_one": "WebGPU, Coordinate Systems: 0 <= z <= w",
-        "depth_step": "WebGPU, Texture Format Capabilities: depth24plus may have 24 bits unorm",
-        "byte": "WebGPU leaves conversion to the API below: either neighbour",
-    },
+WEBGPU = _device(
+    "webgpu",
+    rank=40,
+    operation=(1.0, f"{_WGSL}: x + y, x - y, x * y correctly rounded"),
+    quotient=(5.0, f"{_WGSL}: x / y 2.5 ULP"),
+    root=(9.0 + 2.0**-18, f"{_WGSL}: sqrt inherited from 1.0 / inverseSqrt, 2 ULP and 2.5 ULP"),
+    logarithm=(8.0, f"{_WGSL}: log2 3 ULP, absolute 2^-21 within [0.5, 2]; pow inherited from exp2(y * log2(x))"),
+    exponential=(6.0, f"{_WGSL}: exp2 3 + 2 |x| ULP"),
+    weight_step=(2.0**-8, "WebGPU leaves filtering to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan"),
+    subpixel_bits=(8, "WebGPU leaves it to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan"),
+    subpixel_any=(True, "WebGPU, Rasterization: gives no rounding of positions"),
+    unsnapped=(
+        True,
+        "WebGPU, Rasterization: interpolation by barycentric coordinates, the positions' precision not said",
+    ),
+    splat_border=(1.5 * 2.0**-8, f"WebGPU, Rasterization: a quad's corners as any positions; {_CENTRE}"),
+    minus_one=(False, "WebGPU, Coordinate Systems: 0 <= z <= w"),
+    depth_step=(2.0**-24, "WebGPU, Texture Format Capabilities: depth24plus may have 24 bits unorm"),
+    byte=(1.0, "WebGPU leaves conversion to the API below: either neighbour"),
 )
 
-GL = Device(
-    name="gl",
-    operation=5.0 + 2.0**-18,
-    quotient=11.0,
-    root=11.0,
-    logarithm=12.0,
-    exponential=10.0,
-    weight_step=2.0**-8,
-    subpixel_bits=8,
-    subpixel_any=True,
-    unsnapped=True,
-    splat_border=1.5 * 2.0**-8,
-    minus_one=True,
-    depth_step=2.0**-24,
-    byte=1.0,
-    sources={
-        "operation": f"{_OPENGL}; taken here as a rounding and 2 ULP",
-        "quotient": f"{_OPENGL}; taken here as a reciprocal and a product, each a rounding and 2 ULP",
-        "root": f"{_OPENGL}; taken here as an inverse root and a reciprocal, each a rounding and 2 ULP",
-        "logarithm": f"{_OPENGL}; taken here as Vulkan's and 2 ULP",
-        "exponential": f"{_OPENGL}; taken here as Vulkan's and 2 ULP",
-        "weight_step": "OpenGL 4.6, Texture Minification, gives no precision of weights; 8 bits on desktop implementations",
-        "subpixel_bits": "OpenGL 4.6, Implementation Dependent Values: SUBPIXEL_BITS at least 4, 8 on desktops",
-        "subpixel_any": "OpenGL 4.6, Basic Polygon Rasterization: the rounding of window positions is not specified",
-        "unsnapped": "OpenGL 4.6, Basic Polygon Rasterization: by areas of the triangle, snapped or not is not said",
-        "splat_border": f"OpenGL 4.6, Points: a sprite's size has a granularity, here 1/256; quads: {_CENTRE}",
-        "minus_one": "OpenGL 4.6, Primitive Clipping: -w <= z <= w, the initial clip control",
-        "depth_step": "OpenGL 4.6, Coordinate Transformations: window depth may be fixed point; DEPTH_COMPONENT24",
-        "byte": "OpenGL 4.6, Conversion from Floating-Point to Normalized Fixed-Point: either neighbour",
-    },
+GL = _device(
+    "gl",
+    rank=50,
+    operation=(5.0 + 2.0**-18, f"{_OPENGL}; taken here as a rounding and 2 ULP"),
+    quotient=(11.0, f"{_OPENGL}; taken here as a reciprocal and a product, each a rounding and 2 ULP"),
+    root=(11.0, f"{_OPENGL}; taken here as an inverse root and a reciprocal, each a rounding and 2 ULP"),
+    logarithm=(12.0, f"{_OPENGL}; taken here as Vulkan's and 2 ULP"),
+    exponential=(10.0, f"{_OPENGL}; taken here as Vulkan's and 2 ULP"),
+    weight_step=(
+        2.0**-8,
+        "OpenGL 4.6, Texture Minification, gives no precision of weights; 8 bits on desktop implementations",
+    ),
+    subpixel_bits=(8, "OpenGL 4.6, Implementation Dependent Values: SUBPIXEL_BITS at least 4, 8 on desktops"),
+    subpixel_any=(True, "OpenGL 4.6, Basic Polygon Rasterization: the rounding of window positions is not specified"),
+    unsnapped=(True, "OpenGL 4.6, Basic Polygon Rasterization: by areas of the triangle, snapped or not is not said"),
+    splat_border=(
+        1.5 * 2.0**-8,
+        f"OpenGL 4.6, Points: a sprite's size has a granularity, here 1/256; quads: {_CENTRE}",
+    ),
+    minus_one=(True, "OpenGL 4.6, Primitive Clipping: -w <= z <= w, the initial clip control"),
+    depth_step=(2.0**-24, "OpenGL 4.6, Coordinate Transformations: window depth may be fixed point; DEPTH_COMPONENT24"),
+    byte=(1.0, "OpenGL 4.6, Conversion from Floating-Point to Normalized Fixed-Point: either neighbour"),
 )
 
-PROFILES: dict[str, Device] = {device.name: device for device in (IEEE32, D3D11, VULKAN, WEBGPU, GL)}
-"""By name, the tightest first."""
+PROFILES: dict[str, Device] = {device.name: device for device in sorted(_DEVICES, key=lambda device: device.rank)}
+"""By name, in the order of their ranks."""
+LOOSEST = max(_DEVICES, key=lambda device: device.rank).name
+"""It grants whatever any other does."""

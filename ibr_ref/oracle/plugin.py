@@ -6,7 +6,7 @@
 
 Options: `--ibr-cases "displacement-*"` picks cases by pattern, `--ibr-profile vulkan` declares the device,
 `--ibr-reports DIR` keeps the reports. A test picks for itself with `@pytest.mark.ibr_cases("shadows-*", "splatting-rig")`.
-Nothing of the oracle is imported before a test asks for it.
+Nothing of the oracle but the names of its devices is imported before a test asks for it.
 """
 
 from __future__ import annotations
@@ -90,11 +90,15 @@ class PortCase:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The plugin's options."""
+    from ibr_ref.oracle.device import PROFILES
+
     group = parser.getgroup("ibr_ref", "verdicts on ports of image-based rendering")
     group.addoption(
         "--ibr-cases", metavar="PATTERN", default="*", help="cases for the fixture ibr_case: displacement-*"
     )
-    group.addoption("--ibr-profile", metavar="NAME", help="device profile that the port declares: ieee32 ... gl")
+    group.addoption(
+        "--ibr-profile", metavar="NAME", help=f"device profile that the port declares: {', '.join(PROFILES)}"
+    )
     group.addoption("--ibr-reports", metavar="DIR", help="where reports of failures are written")
 
 

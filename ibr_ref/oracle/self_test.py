@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
+from ibr_ref import methods as registry
 from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.bias import biases
@@ -69,7 +69,7 @@ def port_output(case: Case, port: type[PlainPort], variant: Variant | None = Non
 
 def try_variants(method: str) -> Iterator[VariantResult]:
     """Every variant of a method on all its cases, by the profile that it states."""
-    module = catalogue(method)
+    module = plain_port(method)
     cases = [build(name) for name in names(method)]
     for variant in module.VARIANTS:
         accused, pixels = [], 0
@@ -96,7 +96,7 @@ def try_variants(method: str) -> Iterator[VariantResult]:
 
 def try_mutants(method: str, *, kinds: Sequence[str]) -> Iterator[MutantResult]:
     """Every mutant of a method, on its cases of some kinds."""
-    module = catalogue(method)
+    module = plain_port(method)
     cases = [case for case in map(build, names(method)) if case.kind in kinds]
     for mutant in module.MUTANTS:
         yield _try_mutant(method, mutant, cases)
@@ -132,12 +132,20 @@ def _try_mutant(method: str, mutant: Mutant, cases: Sequence[Case]) -> MutantRes
     )
 
 
-def catalogue(method: str) -> Any:
-    """A method's `Port`, its VARIANTS and its MUTANTS."""
-    return import_module(f"ibr_ref.oracle.{'faults' if method == 'displacement' else 'ports'}.{method}")
-
-
 def size(methods: Sequence[str]) -> int:
     """How many variants and mutants the methods have."""
-    modules = [catalogue(method) for method in methods]
+    modules = [plain_port(method) for method in methods]
     return sum(len(module.VARIANTS) + len(module.MUTANTS) for module in modules)
+
+
+def plain_port(method: str) -> Any:
+    """The method's Port, VARIANTS and MUTANTS. Raises ValueError for a method that has none."""
+    found = registry.named(method).plain_port
+    if found is None:
+        raise ValueError(f"method: found {method!r}, which has no plain port, allowed: {' | '.join(tried())}")
+    return found.open()
+
+
+def tried() -> tuple[str, ...]:
+    """The methods that the oracle is tried on."""
+    return tuple(method.name for method in registry.records() if method.plain_port is not None)

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import PROFILES, Device
+from ibr_ref.oracle.device import LOOSEST, PROFILES, Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees import referee
 
-TIGHT, LOOSEST = [*PROFILES][:2], [*PROFILES][-1]
-"""What the loosest does not explain is wrong, and no other is tried after it has failed. By one of the tight two most right
-ports are explained: with stages they are tried before it, because where they fail they mostly do so in one of the first
-stages. A picture takes all profiles the same time, and a broken one only the loosest."""
+LIKELY = [name for name, device in PROFILES.items() if device.likely]
+"""What the loosest does not explain is wrong, and no other is tried after it has failed. By one of the likely ones most
+right ports are explained: with stages they are tried before it, because where they fail they mostly do so in one of the
+first stages. A picture takes all profiles the same time, and a broken one only the loosest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ def tightest(case: Case, handed: Handed) -> tuple[Trial, dict[str, int]]:
         tried[name] = found.wrong
         return found
 
-    for name in () if _picture_alone(handed) else TIGHT:
+    for name in () if _picture_alone(handed) else LIKELY:
         if not (found := trial(name)).wrong:
             return found, tried
     loosest = trial(LOOSEST)

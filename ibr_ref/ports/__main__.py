@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.methods import named
 from ibr_ref.ports.case_folder import GivenCase, read_case
-from ibr_ref.ports.glsl import displacement, gl, shadows, splatting
+from ibr_ref.ports.glsl import gl
 
 PROFILE = "gl"
 """What the port claims to be: OpenGL."""
@@ -40,8 +41,10 @@ def main() -> None:
 
 def draw(case: GivenCase, device: gl.Device | None = None, **options: Any) -> gl.Frame:
     """A frame with all stages; the options are those of the method's port. Raises ValueError for what is not ported."""
-    ports: dict[str, Any] = {"displacement": displacement.Port, "splatting": splatting.Port, "shadows": shadows.Port}
-    frame: gl.Frame = ports[case.method](device).render(case.scene, case.params, **options)
+    port = named(case.method).sample_port
+    if port is None:
+        raise ValueError(f"{case.method} has no port")
+    frame: gl.Frame = port.open()(device).render(case.scene, case.params, **options)
     return frame
 
 

@@ -38,9 +38,9 @@ def read_case(folder: Path) -> GivenCase:
 def given_case(document: dict[str, Any], array: Callable[[str], np.ndarray]) -> GivenCase:
     """The case of a document; array: reads a file that it names."""
     scene = _part(document["scene"], array)
-    if document["method"] == "shadows" and scene.maps is not None:
-        coverage = scene.maps.content == "mask"
-        scene.maps.image = scene.maps.texels / (scene.maps.samples**2 if coverage else 1.0)
+    maps = getattr(scene, "maps", None)
+    if maps is not None:
+        maps.image = maps.texels / (maps.samples**2 if maps.content == "mask" else 1.0)
     return GivenCase(
         name=document["name"],
         method=document["method"],

@@ -240,7 +240,7 @@ def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_demo_makes_all_pictures(run: Run, tmp_path: Path) -> None:
-    from ibr_ref.cli import demo
+    from ibr_ref import methods
 
     code, out, err = run("demo", "--out", tmp_path / "demo")
     assert (code, err) == (0, "")
@@ -249,7 +249,7 @@ def test_demo_makes_all_pictures(run: Run, tmp_path: Path) -> None:
     assert names >= {
         f"splat_figure_{figure}" for figure in ("1a", "1b", "3a", "3b", "3c", "5a", "5b", "6a", "6b", "6c")
     }
-    assert len(names) == 1 + sum(method.PICTURES for method in demo.METHODS)
+    assert len(names) == 1 + sum(method.demo.open().PICTURES for method in methods.records())
     for path in (tmp_path / "demo").glob("*figure*.png"):
         picture = imageio.imread(path)
         assert picture.shape == (480, 640, 3), path.name

@@ -13,7 +13,7 @@ from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
 
 
-@pytest.mark.parametrize("name", pages.PAGES)
+@pytest.mark.parametrize("name", pages.names())
 def test_a_pipe_gets_the_page(run: Run, name: str) -> None:
     code, out, err = run("method", name)
     assert (code, err) == (0, "")

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ibr_ref import methods
 from ibr_ref.oracle.cases import Case, build
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.referees.reads import READS, fed
+from ibr_ref.oracle.referees.reads import fed, reads_of
 from ibr_ref.oracle.trials import judge
 from tests.oracle.tampered import Arrays, tampered
 
@@ -101,6 +102,7 @@ WRONG: dict[str, Callable[[Any], Any]] = {
 NO_CHANGE = {"raster.patch_id", "raster.face", "march.hit_index", "depth"}
 """Which polygon and face, and that nothing was hit: changed alone they say of other pixels what was computed there."""
 
+READS = {method: reads_of(method) for method in methods.names()}
 READ = {m: sorted({n for reads in READS[m].values() for n in reads}) for m in READS}
 PAIRS = [(m, n) for m in READ for n in READ[m] if n not in NO_CHANGE]
 

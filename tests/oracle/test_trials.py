@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import PROFILES, Device
+from ibr_ref.oracle.device import LOOSEST, PROFILES, Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.trials import judge, tightest
 from tests.oracle.plain_referee import PlainReferee, box_case
@@ -33,8 +33,8 @@ class Explaining(PlainReferee):
         )
 
 
-SETS = [(*some, "gl") for n in range(5) for some in combinations(list(PROFILES)[:-1], n)]
-"""What gl does not explain nothing does: it grants the most."""
+SETS = [(*some, LOOSEST) for n in range(len(PROFILES)) for some in combinations(list(PROFILES)[:-1], n)]
+"""What the loosest does not explain nothing does: it grants the most."""
 
 
 @pytest.mark.parametrize("explaining", SETS, ids="-".join)
@@ -42,7 +42,7 @@ def test_the_tightest_that_explains_is_found(explaining: tuple[str, ...], monkey
     referee = Explaining(explaining)
     monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: referee)
     found, tried = tightest(box_case(), {**STAGES, "color": np.zeros(1)})
-    assert found.device.name == min(explaining, key=list(PROFILES).index)
+    assert found.device.name == min(explaining, key=lambda name: PROFILES[name].rank)
     assert [j.stage for j in found.judgements] == ["raster", "march", "image"]
     assert {name for name, wrong in tried.items() if not wrong} <= {*explaining}
     for name in {*tried} - {*explaining}:  # a trial ends where it fails
@@ -53,7 +53,7 @@ def test_the_tightest_that_explains_is_found(explaining: tuple[str, ...], monkey
 def test_of_a_picture_alone_too(explaining: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: Explaining(explaining))
     found, _ = tightest(box_case(), {"color": np.zeros(1)})
-    assert found.device.name == min(explaining, key=list(PROFILES).index)
+    assert found.device.name == min(explaining, key=lambda name: PROFILES[name].rank)
     assert [j.stage for j in found.judgements] == ["image"]
 
 
@@ -66,11 +66,18 @@ def test_what_no_device_explains_is_judged_whole_by_the_loosest(monkeypatch: pyt
 
 
 def test_the_loosest_grants_what_any_other_does() -> None:
-    loosest = PROFILES["gl"]
-    numbers = set(vars(loosest)) - {"name", "sources"}
+    loosest = PROFILES[LOOSEST]
     for device in PROFILES.values():
+        numbers = set(device.sources)
+        assert numbers == set(vars(device)) - {"name", "rank", "likely", "sources"}
         assert device.subpixel_bits == loosest.subpixel_bits
         assert all(getattr(device, name) <= getattr(loosest, name) for name in numbers), device.name
+
+
+def test_the_order_is_that_of_the_ranks() -> None:
+    ranks = [device.rank for device in PROFILES.values()]
+    assert ranks == sorted(set(ranks))
+    assert PROFILES[LOOSEST].rank == ranks[-1]
 
 
 @pytest.mark.parametrize("kept", [("color",), ("color", "depth"), ("depth",), ("march.steep",)])

@@ -21,7 +21,7 @@ from ibr_ref.scene import Light
 FAR = 2.0**31
 """Beyond it an int has no room for a float."""
 
-CASES = [name for method in ("displacement", "splatting", "shadows") for name in names(method)]
+CASES = names()
 
 
 class Watched(Arithmetic):

@@ -10,14 +10,13 @@ sum |w'_i| |d_i|. So they differ by at most the gradient of the weights times th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded
-from ibr_ref.oracle.device import Device
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -28,23 +27,8 @@ RASTER = 256.0
 
 
 @dataclass(frozen=True, eq=False)
-class Covered:
-    """Pixels that one triangle may cover."""
-
-    triangle: int
-    rows: Ints
-    columns: Ints
-    certain: Bools
-    """Every legal device covers the pixel."""
-    weights: Floats
-    """(n, 3) E_i / (E_0 + E_1 + E_2) of the snapped triangle, as the reference has them (beyond an edge: extrapolated)."""
-    error: Floats
-    """(n,) by how much a legal device's weights may differ, each; inf for a triangle that may have no area."""
-
-
-@dataclass(frozen=True, eq=False)
 class Fragments:
-    """The same of many triangles, one after the other in their order."""
+    """Pixels that triangles may cover, one triangle after the other in their order."""
 
     triangle: Ints
     """(n,) growing."""
@@ -55,8 +39,11 @@ class Fragments:
     inside: Bools
     """(n, 3) the pixel is certainly inside edge i, the one opposite corner i."""
     certain: Bools
+    """(n,) every legal device covers the pixel."""
     weights: Floats
+    """(n, 3) E_i / (E_0 + E_1 + E_2) of the snapped triangle, as the reference has them (beyond an edge: extrapolated)."""
     error: Floats
+    """(n,) by how much a legal device's weights may differ, each; inf for a triangle that may have no area."""
     moved: Floats
     """(n,) how far, along each axis, the point that a device's weights belong to may lie from the pixel's centre."""
 
@@ -96,22 +83,6 @@ def snapped(x: Bounded) -> tuple[Floats, Floats]:
     # From steps = reference + d a coordinate that is off by e steps goes no farther than floor(|d| + e + 1/2).
     off = np.floor(np.abs(steps - reference) + RASTER * x.error + 0.5)
     return reference / RASTER, np.where(x.error > 0.0, off, 0.0) / RASTER
-
-
-def covered(x: Bounded, y: Bounded, width: int, height: int) -> Iterator[Covered]:
-    """For each triangle with corners x, y (T, 3), in window coordinates, the pixels that it may cover. NaN corners: none."""
-    found = fragments(x, y, width, height)
-    names, starts = np.unique(found.triangle, return_index=True)
-    for triangle, first, last in zip(names, starts, [*starts[1:], len(found.triangle)], strict=True):
-        piece = slice(first, last)
-        yield Covered(
-            int(triangle),
-            found.rows[piece],
-            found.columns[piece],
-            found.certain[piece],
-            found.weights[piece],
-            found.error[piece],
-        )
 
 
 def fragments(
@@ -249,8 +220,3 @@ def _owned(corners: Corners, a: int, b: int, owns_border: Callable[[int, int], b
     if owns_border is not None:
         return np.array([owns_border(*way) for way in zip(np.sign(dx), np.sign(dy), strict=True)], np.bool_)
     return np.asarray(((dy == 0.0) & (dx > 0.0)) | (dy < 0.0))
-
-
-def window_raster(device: Device) -> float:
-    """The step of the device's raster of window positions, in pixels."""
-    return 2.0**-device.subpixel_bits

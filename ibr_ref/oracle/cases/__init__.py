@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-
+from ibr_ref.methods import named, records
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.scene import checks
 
-METHODS = ("displacement", "splatting", "shadows")
-
-__all__ = ["METHODS", "Case", "build", "names"]
+__all__ = ["Case", "build", "names"]
 
 
 def names(method: str | None = None) -> list[str]:
     """Of all cases, or of one method's, in the order in which a port author would try them."""
-    methods = METHODS if method is None else (method,)
-    return [name for m in methods for name in import_module(f"ibr_ref.oracle.cases.{m}").CASES]
+    methods = records() if method is None else (named(method),)
+    return [name for m in methods for name in m.cases.open()]
 
 
 def build(name: str) -> Case:
     """The case of that name. Raises ValueError with all names for another."""
-    method = name.partition("-")[0]
-    if method not in METHODS or name not in names(method):
-        raise checks.reject("case", name, " | ".join(names()))
-    case: Case = import_module(f"ibr_ref.oracle.cases.{method}").CASES[name]()
-    return case
+    for method in records():
+        made = method.cases.open() if name.startswith(f"{method.name}-") else {}
+        if name in made:
+            case: Case = made[name]()
+            return case
+    raise checks.reject("case", name, " | ".join(names()))

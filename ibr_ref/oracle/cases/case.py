@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from inspect import signature
 from typing import Any
 
-from ibr_ref import displacement, shadows, splatting
+from ibr_ref import methods
 from ibr_ref.io import Frame
 from ibr_ref.scene import checks
 
@@ -18,7 +19,7 @@ class Case:
     name: str
     """"displacement-box": the name of its folder."""
     method: str
-    """displacement | splatting | shadows."""
+    """The name of its record in `ibr_ref.methods`."""
     kind: str
     """easy | typical | adversarial | real-sized."""
     about: str
@@ -30,20 +31,17 @@ class Case:
     params: Any
     """The method's Params."""
     inputs: dict[str, Any] = field(default_factory=dict)
-    """What else is given: "maps" (shadows.Maps), "normals" (uint8 (H, W, 3), one an image, of splatting)."""
+    """What else is given, as the method's record names it: "maps" (shadows.Maps), "normals" (of splatting: uint8 (H, W, 3),
+    one an image)."""
 
     def __post_init__(self) -> None:
         """Raise ValueError for what no referee judges, the systems that the papers compare with, and for a pow(0, 0)."""
-        checks.choice("method", self.method, ("displacement", "splatting", "shadows"))
+        checks.choice("method", self.method, methods.names())
         light = getattr(self.scene, "light", None)
         if getattr(light, "exponent", 1) == 0:
             raise checks.reject("exponent", 0, "1 or more in a case: a port's pow(0, 0) is undefined")
-        if self.method == "displacement":
-            checks.choice("method", self.params.method, ("protruded",))
-        elif self.method == "splatting":
-            checks.choice("shape", self.params.shape, ("square", "disc"))
-        else:
-            checks.choice("method", self.params.method, ("warp", "direct"))
+        field, judged = methods.named(self.method).judged
+        checks.choice(field, getattr(self.params, field), judged)
 
     @cached_property
     def frame(self) -> Frame:
@@ -52,8 +50,7 @@ class Case:
 
     def draw(self, *, stages: bool) -> Frame:
         """What the reference draws; without stages the same picture and depth sooner."""
-        if self.method == "displacement":
-            return displacement.render(self.scene, self.params, stages=stages)
-        if self.method == "splatting":
-            return splatting.render(self.scene, self.params, stages=stages)
-        return shadows.render(self.scene, self.params, maps=self.inputs.get("maps"), stages=stages)
+        render = methods.named(self.method).package.open().render
+        given = {name: value for name, value in self.inputs.items() if name in signature(render).parameters}
+        frame: Frame = render(self.scene, self.params, stages=stages, **given)
+        return frame

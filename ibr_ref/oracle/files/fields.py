@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from itertools import groupby
-from typing import Any
+from typing import Any, Literal, get_args, get_origin
 
 from ibr_ref.oracle.schema import Document, input_files
 from ibr_ref.oracle.schema.base import ArrayFile, Model
@@ -35,10 +36,19 @@ def _described(model: type[Model], paths: list[str]) -> list[str]:
     lines = [f"- {at}: {_one_line(model.__doc__)}"]
     for alone, fields in groupby(model.model_fields.items(), lambda item: not item[1].description):
         if alone:
-            lines.append(f"  - {', '.join(f'`{name}`' for name, _ in fields)}")
+            lines.append(f"  - {', '.join(f'`{name}`{_choices(field.annotation)}' for name, field in fields)}")
         else:
-            lines += [f"  - `{name}`: {_one_line(field.description)}" for name, field in fields]
+            lines += [
+                f"  - `{name}`{_choices(field.annotation)}: {_one_line(field.description)}" for name, field in fields
+            ]
     return lines
+
+
+def _choices(annotation: Any) -> str:
+    """The values of a field that has few: ` ("dissolve" or "nearest")`."""
+    if get_origin(annotation) is not Literal:
+        return ""
+    return f" ({' or '.join(json.dumps(value) for value in get_args(annotation))})"
 
 
 def _one_line(text: str | None) -> str:

@@ -16,7 +16,8 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.files.npy import Accept, Header
 from ibr_ref.oracle.files.pictures import turned
 from ibr_ref.oracle.files.problem import UnusableError
-from ibr_ref.oracle.schema.stages import CONTRACTS, expected
+from ibr_ref.oracle.schema.document import schema_of
+from ibr_ref.oracle.schema.stages import contract_of, expected
 
 _KINDS = {
     "f": ("f", "float32 or float64"),
@@ -25,9 +26,6 @@ _KINDS = {
     "b": ("biu", "booleans, or integers 0 and 1"),
 }
 """By the kind of the reference's array: the kinds that are allowed, and in words. Integers are never floats."""
-
-MOST_FACES = 64
-"""That a port may hand in for a polygon, which has six."""
 
 
 @dataclass(frozen=True)
@@ -93,14 +91,14 @@ class Slots:
     """All names of a case; drawn from its frame."""
 
     def __init__(self, case: Case) -> None:
-        contract = CONTRACTS[case.method]
-        corners = MOST_FACES * len(case.scene.polygons) if case.method == "displacement" else 0
+        contract = contract_of(case.method)
+        most_faces = schema_of(case.method).most_faces(case.scene)
         self.by_name = {
             name: Slot(
                 name,
                 array.shape,
                 np.dtype(described(contract, name).dtype),
-                corners if name.startswith("vertex.") else 0,
+                most_faces.get(name, 0),
             )
             for name, array in expected(case.frame).items()
         }

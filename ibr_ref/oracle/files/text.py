@@ -11,9 +11,9 @@ from ibr_ref.contract import described, spelled
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.files.features import features
 from ibr_ref.oracle.files.fields import field_list, input_table
-from ibr_ref.oracle.referees.reads import READS
+from ibr_ref.oracle.referees.reads import reads_of
 from ibr_ref.oracle.schema import Document
-from ibr_ref.oracle.schema.stages import CONTRACTS
+from ibr_ref.oracle.schema.stages import contract_of
 from ibr_ref.pages import excerpt
 
 
@@ -30,9 +30,11 @@ def json_text(value: Any, indent: str = "") -> str:
     return json.dumps(value, allow_nan=False, ensure_ascii=False)
 
 
-def _reads(method: str, name: str) -> str:
-    reads = READS[method]
-    return ", ".join(reads[name if name in reads else name.rpartition(".")[0]]) or "-"
+def _reads(document: Document, name: str) -> str:
+    """Those that the case has: a map that is rendered directly is made of no grid."""
+    reads = reads_of(document.method)
+    there = {stage.name for stage in document.expected} | {stage.name.rpartition(".")[0] for stage in document.expected}
+    return ", ".join(one for one in reads[name if name in reads else name.rpartition(".")[0]] if one in there) or "-"
 
 
 def readme(document: Document) -> str:
@@ -45,12 +47,13 @@ def readme(document: Document) -> str:
 Method: {document.method}. Kind: {document.kind}. Meant for the device profile {document.profile}.
 
 `case.json` has the scene, every parameter and all matrices; `inputs/` the arrays that it names; `expected/` what the
-reference draws. This page says what they mean, and the part of the method that this case needs.
+reference draws. This page says what they mean, and the part of the method that this case needs; the whole of it is
+printed by `ibr-ref method {document.method}`.
 
 ## Handing in
 
-Draw the scene, write your arrays into a folder under the names of `expected/` (any of them, or `color.png` alone), and ask
-`ibr-ref check` for a verdict. {_HANDING_IN}
+Draw the scene, write your arrays into a folder under the names of `expected/` (any of them, or `color.png` alone), and
+ask for a verdict: `ibr-ref check CASE_FOLDER YOUR_FOLDER`. {_HANDING_IN}
 
 ## case.json
 
@@ -92,7 +95,7 @@ def _expected(document: Document) -> str:
     """The table of the results, and the names of the margins."""
     results = [stage for stage in document.expected if stage.kind == "result"]
     margins = [f"`{stage.name}`" for stage in document.expected if stage.kind == "margin"]
-    contract = CONTRACTS[document.method]
+    contract = contract_of(document.method)
     left = {stage.name: spelled(described(contract, stage.name).discarded) for stage in results}
     more = any(left.values())
     lines = [
@@ -101,11 +104,10 @@ def _expected(document: Document) -> str:
     ]
     for stage in results:
         cells = f"| {stage.name} | {stage.shape} {stage.dtype} | {stage.meaning} | {stage.nothing} |"
-        lines.append(
-            cells + (f" {left[stage.name] or '-'} |" if more else "") + f" {_reads(document.method, stage.name)} |"
-        )
+        lines.append(cells + (f" {left[stage.name] or '-'} |" if more else "") + f" {_reads(document, stage.name)} |")
     if more:
         lines += ["", '"own": a discarded fragment or point leaves there what any other has.']
     lines += ["", _JUDGED_ON]
-    lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
+    if margins:
+        lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
     return "\n".join(lines)

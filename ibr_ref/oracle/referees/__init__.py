@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from functools import cache
 
+from ibr_ref.methods import Method, named
 from ibr_ref.oracle.judgement import Referee
 
 
-@cache
 def referee(method: str) -> Referee:
     """The judge of a method: one, because it keeps what follows from the last case and device."""
-    if method == "displacement":
-        from ibr_ref.oracle.referees.displacement import DisplacementReferee
+    return _judge(named(method))
 
-        return DisplacementReferee()
-    if method == "splatting":
-        from ibr_ref.oracle.referees.splatting import SplattingReferee
 
-        return SplattingReferee()
-    from ibr_ref.oracle.referees.shadows import ShadowsReferee
-
-    return ShadowsReferee()
+@cache
+def _judge(method: Method) -> Referee:
+    made: Referee = method.referee.open()()
+    return made

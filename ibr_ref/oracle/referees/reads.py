@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from ibr_ref.methods import named
+
 DISPLACEMENT: dict[str, tuple[str, ...]] = {
     "vertex.clip": (),
     "vertex.patch": (),
@@ -69,13 +71,16 @@ SHADOWS: dict[str, tuple[str, ...]] = {
 }
 """`depth` says which surface a pixel shows, where the case leaves that open; its number goes into nothing."""
 
-READS = {"displacement": DISPLACEMENT, "splatting": SPLATTING, "shadows": SHADOWS}
-"""By method: for each array the port's own arrays that it is computed from."""
+
+def reads_of(method: str) -> dict[str, tuple[str, ...]]:
+    """For each array of a method the port's own arrays that it is computed from."""
+    reads: dict[str, tuple[str, ...]] = named(method).reads.open()
+    return reads
 
 
 def fed(method: str, arrays: Collection[str], handed: Collection[str]) -> tuple[str, ...]:
     """Of what was handed in, all that arrays are computed from: what they read, or what that reads where it is missing."""
-    reads = READS[method]
+    reads = reads_of(method)
     found: set[str] = set()
     waiting = [name for array in arrays for name in reads[array]]
     while waiting:

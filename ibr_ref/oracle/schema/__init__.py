@@ -1,8 +1,8 @@
 """`case.json`: strict models of everything that a port is given, from cases and back; the JSON Schema made of them."""
 
 from ibr_ref.oracle.schema.document import (
-    ADAPTER,
     Document,
+    adapter,
     build,
     describe,
     describe_inputs,
@@ -11,4 +11,4 @@ from ibr_ref.oracle.schema.document import (
     schema_text,
 )
 
-__all__ = ["ADAPTER", "Document", "build", "describe", "describe_inputs", "input_files", "schema", "schema_text"]
+__all__ = ["Document", "adapter", "build", "describe", "describe_inputs", "input_files", "schema", "schema_text"]

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from ibr_ref import displacement
 from ibr_ref.displacement.patch_space import uniforms
+from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.schema.base import (
     ArrayFile,
     Inputs,
@@ -22,6 +23,7 @@ from ibr_ref.oracle.schema.base import (
     values,
 )
 from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
+from ibr_ref.oracle.schema.document import Document, Schema
 from ibr_ref.oracle.schema.light import LightFile, build_light, describe_light
 from ibr_ref.scene import BasePolygon
 
@@ -92,18 +94,23 @@ class DisplacementScene(Model):
     polygons: tuple[PolygonFile, ...] = Field(min_length=1)
 
 
-def describe_params(params: displacement.Params) -> DisplacementParams:
-    """The parameters as a document."""
-    return DisplacementParams(**values(DisplacementParams, params))
+class DisplacementCase(Document):
+    """Protruded displacement mapping (Yoo & Han 2006)."""
+
+    method: Literal["displacement"]
+    params: DisplacementParams
+    scene: DisplacementScene
 
 
-def build_params(file: DisplacementParams) -> displacement.Params:
-    """The parameters of a document."""
-    return displacement.Params(**file.model_dump())
+MOST_FACES = 64
+"""That a port may hand in for a polygon, which has six."""
 
 
-def describe_scene(scene: displacement.Scene, inputs: Inputs) -> DisplacementScene:
-    """The scene as a document; its maps go into `inputs`."""
+def _describe(case: Case, inputs: Inputs) -> tuple[DisplacementParams, DisplacementScene]:
+    return DisplacementParams(**values(DisplacementParams, case.params)), _scene(case.scene, inputs)
+
+
+def _scene(scene: displacement.Scene, inputs: Inputs) -> DisplacementScene:
     return DisplacementScene(
         camera=describe_camera(scene.camera),
         light=describe_light(scene.light),
@@ -143,14 +150,17 @@ def _polygon(scene: displacement.Scene, index: int, polygon: BasePolygon, inputs
     )
 
 
-def build_scene(file: DisplacementScene, stored: Stored) -> displacement.Scene:
-    """The scene of a document."""
-    return displacement.Scene(
+def _build(
+    document: DisplacementCase, stored: Stored
+) -> tuple[displacement.Scene, displacement.Params, dict[str, Any]]:
+    file = document.scene
+    scene = displacement.Scene(
         camera=build_camera(file.camera),
         light=build_light(file.light),
         background=file.background,
         polygons=[_built_polygon(polygon, stored) for polygon in file.polygons],
     )
+    return scene, displacement.Params(**document.params.model_dump()), {}
 
 
 def _built_polygon(file: PolygonFile, stored: Stored) -> BasePolygon:
@@ -167,3 +177,28 @@ def _built_polygon(file: PolygonFile, stored: Stored) -> BasePolygon:
         facade_tile=file.facade_tile,
         **maps,
     )
+
+
+def _features(document: DisplacementCase) -> set[str]:
+    params, scene = document.params, document.scene
+    found = {
+        "phong",
+        params.interval,
+        params.faces,
+        "shadow" if params.shadow_steps else "unshadowed",
+        "polygon_depth" if params.depth == "polygon" else "displaced",
+    }
+    for polygon in scene.polygons:
+        found.add("heights" if polygon.normal_map is None else "normal_map")
+        if polygon.facade_map is not None:
+            found.add("facade")
+    if found & {"heights", "facade"}:
+        found.add("gradient")
+    return found
+
+
+def _most_faces(scene: displacement.Scene) -> dict[str, int]:
+    return dict.fromkeys(("vertex.clip", "vertex.patch"), MOST_FACES * len(scene.polygons))
+
+
+SCHEMA = Schema(document=DisplacementCase, describe=_describe, build=_build, features=_features, most_faces=_most_faces)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, reduce
+from operator import or_
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, TypeAdapter
 
 import ibr_ref
+from ibr_ref import methods
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.schema import displacement, shadows, splatting
 from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Model, Stored
 from ibr_ref.oracle.schema.conventions import CONVENTIONS
 from ibr_ref.oracle.schema.stages import StageFile, describe_stages
@@ -30,8 +34,8 @@ def known_profile(name: str) -> str:
 Profile = Annotated[str, AfterValidator(known_profile)]
 
 
-class _Document(Model):
-    """What a case is, whatever its method."""
+class Document(Model):
+    """What a case is, whatever its method: each adds `method`, `params` and `scene`."""
 
     format: Literal["ibr_ref case"]
     version: Literal[1]
@@ -49,46 +53,52 @@ class _Document(Model):
     expected: tuple[StageFile, ...]
     """The final image and all stages, in order."""
 
-
-class DisplacementCase(_Document):
-    """Protruded displacement mapping (Yoo & Han 2006)."""
-
-    method: Literal["displacement"]
-    params: displacement.DisplacementParams
-    scene: displacement.DisplacementScene
+    if TYPE_CHECKING:  # to pydantic they are fields of each method's own model, in its own types
+        method: str
+        params: Any
+        scene: Any
 
 
-class SplattingCase(_Document):
-    """Splatting of depth images (Lee & Park 2006)."""
+@dataclass(frozen=True, kw_only=True)
+class Schema:
+    """A method in `case.json`: what `methods.Method.schema` names."""
 
-    method: Literal["splatting"]
-    params: splatting.SplattingParams
-    scene: splatting.SplattingScene
+    document: type[Document]
+    describe: Callable[[Case, Inputs], tuple[Any, Any]]
+    """`params` and `scene` of the document; the case's arrays go into the inputs. Raises ValueError for what cannot be
+    written down."""
+    build: Callable[[Any, Stored], tuple[Any, Any, dict[str, Any]]]
+    """Scene, parameters and `Case.inputs` of such a document. Raises ValueError for what is no scene."""
+    features: Callable[[Any], set[str]] = lambda document: set()
+    """Of such a document: which marked sections of the method's page (`pages`) its README has."""
+    most_faces: Callable[[Any], dict[str, int]] = lambda scene: {}
+    """Of a scene's arrays that have four rows a face: how many faces a port may hand in, right or not."""
 
 
-class ShadowsCase(_Document):
-    """Shadows by image warping (Kang & Ihm 2002)."""
-
-    method: Literal["shadows"]
-    params: shadows.ShadowsParams
-    scene: shadows.ShadowsScene
+def schema_of(method: str) -> Schema:
+    """That of a method."""
+    found: Schema = methods.named(method).schema.open()
+    return found
 
 
-Document = DisplacementCase | SplattingCase | ShadowsCase
+def adapter() -> TypeAdapter[Document]:
+    """What reads and checks `case.json`, of any method."""
+    return _adapter(methods.records())
 
-ADAPTER: TypeAdapter[Document] = TypeAdapter(Annotated[Document, Field(discriminator="method")])
 
-_INPUTS: dict[str, tuple[str, ...]] = {"displacement": (), "splatting": ("normals",), "shadows": ("maps",)}
-"""What a case may be given besides scene and parameters."""
+@cache
+def _adapter(records: tuple[methods.Method, ...]) -> TypeAdapter[Document]:
+    documents: Any = reduce(or_, (method.schema.open().document for method in records))
+    return TypeAdapter(Annotated[documents, Field(discriminator="method")])
 
 
 def schema() -> dict[str, Any]:
     """The JSON Schema of `case.json`."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": FORMAT, **ADAPTER.json_schema()}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": FORMAT, **adapter().json_schema()}
 
 
 def schema_text() -> str:
-    """The same as it is shipped, in `case.schema.json` beside this module."""
+    """The same of this package's own methods, as it is shipped, in `case.schema.json` beside this module."""
     return (Path(__file__).parent / "case.schema.json").read_text(encoding="utf-8")
 
 
@@ -105,12 +115,14 @@ def describe(case: Case) -> tuple[Document, Inputs]:
 
 def describe_inputs(case: Case) -> tuple[Document, Inputs]:
     """The same without what is expected, and without rendering."""
-    checks.choice("method", case.method, tuple(_INPUTS))
-    unknown = sorted(set(case.inputs) - set(_INPUTS[case.method]))
+    known = methods.named(case.method).inputs
+    unknown = sorted(set(case.inputs) - set(known))
     if unknown:
-        raise checks.reject("inputs", unknown[0], f"{', '.join(_INPUTS[case.method]) or 'none'} (of {case.method})")
+        raise checks.reject("inputs", unknown[0], f"{', '.join(known) or 'none'} (of {case.method})")
     inputs = Inputs()
-    shared: dict[str, Any] = {
+    method = schema_of(case.method)
+    params, scene = method.describe(case, inputs)
+    fields: dict[str, Any] = {
         "format": FORMAT,
         "version": VERSION,
         "made_by": f"ibr_ref {ibr_ref.__version__}",
@@ -120,52 +132,18 @@ def describe_inputs(case: Case) -> tuple[Document, Inputs]:
         "profile": case.profile,
         "conventions": CONVENTIONS,
         "expected": (),
+        "method": case.method,
+        "params": params,
+        "scene": scene,
     }
-    if case.method == "displacement":
-        return (
-            DisplacementCase(
-                **shared,
-                method="displacement",
-                params=displacement.describe_params(case.params),
-                scene=displacement.describe_scene(case.scene, inputs),
-            ),
-            inputs,
-        )
-    if case.method == "splatting":
-        given = case.inputs.get("normals")
-        return (
-            SplattingCase(
-                **shared,
-                method="splatting",
-                params=splatting.describe_params(case.params),
-                scene=splatting.describe_scene(case.scene, given, inputs),
-            ),
-            inputs,
-        )
-    maps = case.inputs.get("maps")
-    return (
-        ShadowsCase(
-            **shared,
-            method="shadows",
-            params=shadows.describe_params(case.params),
-            scene=shadows.describe_scene(case.scene, case.params, maps, inputs),
-        ),
-        inputs,
-    )
+    return method.document(**fields), inputs
 
 
 def build(document: Document, stored: Stored) -> Case:
     """The case of a document and its arrays, by the names of their files. Raises ValueError for what is no scene."""
     shared: dict[str, Any] = {name: getattr(document, name) for name in ("name", "method", "kind", "about", "profile")}
-    if isinstance(document, DisplacementCase):
-        scene: Any = displacement.build_scene(document.scene, stored)
-        return Case(**shared, scene=scene, params=displacement.build_params(document.params))
-    if isinstance(document, SplattingCase):
-        scene, normals = splatting.build_scene(document.scene, stored)
-        return Case(**shared, scene=scene, params=splatting.build_params(document.params), inputs={"normals": normals})
-    scene, maps = shadows.build_scene(document.scene, stored)
-    inputs = {} if maps is None else {"maps": maps}
-    return Case(**shared, scene=scene, params=shadows.build_params(document.params), inputs=inputs)
+    scene, params, inputs = schema_of(document.method).build(document, stored)
+    return Case(**shared, scene=scene, params=params, inputs=inputs)
 
 
 def input_files(part: Any) -> list[ArrayFile]:

@@ -8,10 +8,13 @@ import numpy as np
 from pydantic import Field
 
 from ibr_ref import shadows
+from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Matrix2x3, Model, Stored, Vector2, Vector3, numbers, values
 from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
+from ibr_ref.oracle.schema.document import Document, Schema
 from ibr_ref.scene import AreaLight, Mesh, checks
 from ibr_ref.shadows.prepared import depths_of
+from ibr_ref.shadows.render import check_maps
 from ibr_ref.shadows.samples import samples_of, seen_offset
 
 
@@ -116,21 +119,26 @@ class ShadowsScene(Model):
     """None: method is not "warp", and the maps are rendered."""
 
 
-def describe_params(params: shadows.Params) -> ShadowsParams:
-    """The parameters as a document."""
+class ShadowsCase(Document):
+    """Shadows by image warping (Kang & Ihm 2002)."""
+
+    method: Literal["shadows"]
+    params: ShadowsParams
+    scene: ShadowsScene
+
+
+def _describe(case: Case, inputs: Inputs) -> tuple[ShadowsParams, ShadowsScene]:
+    return _params(case.params), _scene(case.scene, case.params, case.inputs.get("maps"), inputs)
+
+
+def _params(params: shadows.Params) -> ShadowsParams:
     chosen = values(ShadowsParams, params)
     if isinstance(params.light_samples, np.ndarray):
         chosen["light_samples"] = numbers(params.light_samples)
     return ShadowsParams(**chosen)
 
 
-def build_params(file: ShadowsParams) -> shadows.Params:
-    """The parameters of a document."""
-    return shadows.Params(**file.model_dump())
-
-
-def describe_scene(scene: shadows.Scene, params: shadows.Params, maps: Any, inputs: Inputs) -> ShadowsScene:
-    """The scene as a document; meshes and prepared maps go into `inputs`."""
+def _scene(scene: shadows.Scene, params: shadows.Params, maps: Any, inputs: Inputs) -> ShadowsScene:
     samples = []
     for sample in samples_of(scene, params):
         camera = scene.light.camera(params.map_size, sample.position)
@@ -206,8 +214,15 @@ def _maps(scene: shadows.Scene, params: shadows.Params, maps: Any, inputs: Input
     )
 
 
-def build_scene(file: ShadowsScene, stored: Stored) -> tuple[shadows.Scene, shadows.Maps | None]:
-    """The scene of a document, and its prepared maps."""
+def _build(document: ShadowsCase, stored: Stored) -> tuple[shadows.Scene, shadows.Params, dict[str, Any]]:
+    scene, maps = _built_scene(document.scene, stored)
+    params = shadows.Params(**document.params.model_dump())
+    if params.method == "warp":
+        check_maps(scene, params, maps)
+    return scene, params, {} if maps is None else {"maps": maps}
+
+
+def _built_scene(file: ShadowsScene, stored: Stored) -> tuple[shadows.Scene, shadows.Maps | None]:
     light = file.light.model_dump(exclude={"camera"})
     scene = shadows.Scene(
         receivers=[_built_mesh(mesh, stored) for mesh in file.receivers],
@@ -236,3 +251,16 @@ def build_scene(file: ShadowsScene, stored: Stored) -> tuple[shadows.Scene, shad
 def _built_mesh(file: MeshFile, stored: Stored) -> Mesh:
     color = stored[file.color.file] if isinstance(file.color, ArrayFile) else file.color
     return Mesh(vertices=stored[file.vertices.file], triangles=stored[file.triangles.file], color=color)
+
+
+def _features(document: ShadowsCase) -> set[str]:
+    params = document.params
+    found: set[str] = {params.method, params.content, params.accumulation}
+    if params.method == "warp":
+        found.add(params.policy)
+    if params.content == "depth":
+        found |= {word for word, used in (("pcf", params.pcf), ("quantize", params.quantize is not None)) if used}
+    return found
+
+
+SCHEMA = Schema(document=ShadowsCase, describe=_describe, build=_build, features=_features)

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ibr_ref import splatting
+from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Model, Stored, Vector3, numbers, texels, values
 from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
+from ibr_ref.oracle.schema.document import Document, Schema
 from ibr_ref.oracle.schema.light import LightFile, build_light, describe_light
 from ibr_ref.scene import DepthImage, checks
 from ibr_ref.splatting.references import prepare
@@ -55,18 +57,21 @@ class SplattingScene(Model):
     images: tuple[ImageFile, ...] = Field(min_length=1)
 
 
-def describe_params(params: splatting.Params) -> SplattingParams:
-    """The parameters as a document."""
-    return SplattingParams(**values(SplattingParams, params))
+class SplattingCase(Document):
+    """Splatting of depth images (Lee & Park 2006)."""
+
+    method: Literal["splatting"]
+    params: SplattingParams
+    scene: SplattingScene
 
 
-def build_params(file: SplattingParams) -> splatting.Params:
-    """The parameters of a document."""
-    return splatting.Params(**file.model_dump())
+def _describe(case: Case, inputs: Inputs) -> tuple[SplattingParams, SplattingScene]:
+    params = SplattingParams(**values(SplattingParams, case.params))
+    return params, _scene(case.scene, case.inputs.get("normals"), inputs)
 
 
-def describe_scene(scene: splatting.Scene, given: Sequence[Any] | None, inputs: Inputs) -> SplattingScene:
-    """The scene as a document; its images and their normals (None: the reference's own) go into `inputs`."""
+def _scene(scene: splatting.Scene, given: Sequence[Any] | None, inputs: Inputs) -> SplattingScene:
+    """given: the images' normals; None: the reference's own."""
     normals = [_own_normals(image) for image in scene.images] if given is None else list(given)
     if len(normals) != len(scene.images):
         raise checks.reject('inputs["normals"]', f"{len(normals)} arrays", f"{len(scene.images)}, one an image")
@@ -98,8 +103,8 @@ def _image(index: int, image: DepthImage, normals: Any, inputs: Inputs) -> Image
     )
 
 
-def build_scene(file: SplattingScene, stored: Stored) -> tuple[splatting.Scene, tuple[NDArray[np.uint8], ...]]:
-    """The scene of a document, and the normals of its images."""
+def _build(document: SplattingCase, stored: Stored) -> tuple[splatting.Scene, splatting.Params, dict[str, Any]]:
+    file = document.scene
     images = [
         DepthImage(
             color=texels(stored, image.color),
@@ -115,4 +120,12 @@ def build_scene(file: SplattingScene, stored: Stored) -> tuple[splatting.Scene, 
         light=None if file.light is None else build_light(file.light),
         background=file.background,
     )
-    return scene, tuple(stored[image.normals.file] for image in file.images)
+    normals = tuple(stored[image.normals.file] for image in file.images)
+    return scene, splatting.Params(**document.params.model_dump()), {"normals": normals}
+
+
+def _features(document: SplattingCase) -> set[str]:
+    return {document.params.shape, "normals", "unlit" if document.scene.light is None else "phong"}
+
+
+SCHEMA = Schema(document=SplattingCase, describe=_describe, build=_build, features=_features)

@@ -6,12 +6,10 @@ from typing import Any, Literal
 
 from numpy.typing import NDArray
 
-from ibr_ref.contract import IMAGE, described, is_margin
-from ibr_ref.displacement import contract as displacement
+from ibr_ref import methods
+from ibr_ref.contract import IMAGE, StageArray, described, is_margin
 from ibr_ref.io import Frame
 from ibr_ref.oracle.schema.base import StoredFile
-from ibr_ref.shadows import contract as shadows
-from ibr_ref.splatting import contract as splatting
 
 
 class StageFile(StoredFile):
@@ -27,8 +25,10 @@ class StageFile(StoredFile):
     """"margin": how close a decision of the reference was; ports need not hand it in."""
 
 
-CONTRACTS = {"displacement": displacement.STAGES, "splatting": splatting.STAGES, "shadows": shadows.STAGES}
-"""The tables of all methods."""
+def contract_of(method: str) -> dict[str, StageArray]:
+    """The table of a method's arrays."""
+    contract: dict[str, StageArray] = methods.named(method).contract.open()
+    return contract
 
 
 def flat(stages: dict[str, Any]) -> dict[str, NDArray[Any]]:
@@ -54,7 +54,7 @@ def describe_stages(method: str, frame: Frame) -> tuple[StageFile, ...]:
 
 def describe_stage(method: str, name: str, array: NDArray[Any]) -> StageFile:
     """One expected array as a document. Raises KeyError for a name that the method's contract does not have."""
-    entry = described(CONTRACTS[method], name)
+    entry = described(contract_of(method), name)
     return StageFile(
         name=name,
         group="image" if name in IMAGE else name.split(".")[0],

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
 from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, lerp, opposite, power, unit, uploaded
-from ibr_ref.oracle.accept.coverage import covered, snapped
+from ibr_ref.oracle.accept.coverage import Fragments, fragments, snapped
 from ibr_ref.oracle.accept.fetch import Texture, fetch, highest_around
 from ibr_ref.oracle.accept.winners import winners
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
@@ -66,6 +68,13 @@ def triangles(count: int, seed: int) -> np.ndarray:
     return random.uniform(-4, 28, (count, 1, 2)) + size * random.normal(0, 1, (count, 3, 2))
 
 
+def of_each(found: Fragments) -> Iterator[tuple[int, Fragments]]:
+    """The triangles that may cover any pixel, and what is found of each."""
+    for triangle in np.unique(found.triangle):
+        here = found.triangle == triangle
+        yield int(triangle), Fragments(**{name: array[here] for name, array in vars(found).items()})
+
+
 def test_the_reference_covers_what_is_certain_and_nothing_that_is_not_possible() -> None:
     width, height = 24, 20
     corners = triangles(300, 1)
@@ -78,8 +87,8 @@ def test_the_reference_covers_what_is_certain_and_nothing_that_is_not_possible()
     snapped = np.stack([ours.x, ours.y], -1) / 256.0
     for device in PROFILES.values():
         bounds = [Bounded(corners[..., k], np.full(corners.shape[:2], 1e-6), device) for k in (0, 1)]
-        for found in covered(*bounds, width, height):
-            reference = _inside(snapped[found.triangle], width, height)
+        for triangle, found in of_each(fragments(*bounds, width, height)):
+            reference = _inside(snapped[triangle], width, height)
             assert reference[found.rows[found.certain], found.columns[found.certain]].all()
             outside = np.ones((height, width), bool)
             outside[found.rows, found.columns] = False
@@ -96,13 +105,13 @@ def test_every_snapping_is_among_the_possible(rounding: str) -> None:
     snapped = arithmetic.snap(corners + jitter)
     bounds = [Bounded(corners[..., k], np.full(corners.shape[:2], 1e-5), device) for k in (0, 1)]
     seen = 0
-    for found in covered(*bounds, width, height):
-        drawn = _inside(snapped[found.triangle], width, height)
+    for triangle, found in of_each(fragments(*bounds, width, height)):
+        drawn = _inside(snapped[triangle], width, height)
         assert drawn[found.rows[found.certain], found.columns[found.certain]].all()
         outside = np.ones((height, width), bool)
         outside[found.rows, found.columns] = False
         assert not drawn[outside].any()
-        weights = _weights(snapped[found.triangle], found.rows + 0.5, found.columns + 0.5)
+        weights = _weights(snapped[triangle], found.rows + 0.5, found.columns + 0.5)
         finite = np.isfinite(found.error)
         assert (abs(weights - found.weights).max(axis=1)[finite] <= found.error[finite] + 1e-12).all()
         seen += len(found.rows)

@@ -7,7 +7,6 @@ it is kept, and split where the results are no planes over it.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 

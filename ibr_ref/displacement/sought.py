@@ -1,0 +1,48 @@
+"""What a search of one polygon is given, and where it writes what it finds (`compared`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.displacement.buffers import Hits, Uniforms
+from ibr_ref.displacement.fragment import Map
+
+Floats = NDArray[np.float64]
+
+
+class Found(NamedTuple):
+    """What a search finds, one element a pixel."""
+
+    hits: Hits
+    fetches: NDArray[np.int32]
+    """Texture fetches of the search; 0 where the polygon does not cover the pixel."""
+
+
+class Sought(NamedTuple):
+    """A search's inputs."""
+
+    heights: Floats
+    """(H, W), read-only."""
+    height: Map
+    """The same, flat."""
+    repeat: bool | None
+    """True or None, a type to the compiler: the map repeats, or it ends at its border."""
+    points: Floats
+    """(3, P): the pixels' points on the polygon, NaN where it does not cover them."""
+    constants: Uniforms
+    params: Any
+    """Params, which a file with kernels does not name."""
+    found: Found
+    """Filled by the search: all discarded, and no fetches."""
+    kept: dict[tuple[Any, ...], Any]
+    """Of this polygon, for as long as it lives."""
+
+    def prepared(self, key: tuple[Any, ...], make: Callable[[], Any]) -> Any:
+        """What a search needs beforehand (a mip chain, distances, cones, a quadtree), made once for each polygon."""
+        if key not in self.kept:
+            self.kept[key] = make()
+        return self.kept[key]

@@ -1,0 +1,151 @@
+"""The methods: one record each, in one registry.
+
+A record says where the rooms of a method are, by dotted path; each is imported when it is first used, so that `--help`
+answers at once. Whoever needs all methods, or one by its name, asks here: no other file knows which there are.
+
+A further method is a folder and a record: a line here, or `register(record)` before `ibr_ref.cli` is imported, for one
+that lives in another package. CONTRIBUTING.md says what each room has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+
+class Room(str):
+    """The dotted path of a module, or "module:name" for something in it."""
+
+    __slots__ = ()
+
+    def open(self) -> Any:
+        """The module, or what it has under the name. Raises ImportError or AttributeError where that is not there."""
+        module, _, name = self.partition(":")
+        found = import_module(module)
+        return getattr(found, name) if name else found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """What there is of a method. Rooms that are None are not there: no demo, no bench, and so on."""
+
+    name: str
+    """As `case.json`, the command line and the names of its cases ("NAME-box") have it."""
+    title: str
+    source: str
+    """Authors and year: "Yoo & Han 2006"."""
+    package: Room
+    """Scene, Params and `render(scene, params, *, stages, ...) -> io.Frame`."""
+    contract: Room
+    """`contract.StageArray` by name: every array of `Frame.stages`."""
+    page: str
+    """What the method does, for readers: "package:file"."""
+    cases: Room
+    """Functions that make a `Case`, by name."""
+    schema: Room
+    """`oracle.schema.document.Schema`: the method in `case.json`."""
+    referee: Room
+    """A class, `oracle.judgement.Referee`."""
+    reads: Room
+    """By array: the port's own arrays that it is computed from."""
+    judged: tuple[str, tuple[str, ...]]
+    """The field of Params by which systems are chosen, and those of its values that the referee judges."""
+    inputs: tuple[str, ...] = ()
+    """What a case may be given besides scene and parameters: `Case.inputs`. `render` is given those of them that it has
+    parameters for."""
+    plain_port: Room | None = None
+    """Port, VARIANTS, MUTANTS: what `ibr-ref check --self-test` tries the oracle on."""
+    sample_port: Room | None = None
+    """A class, drawn by `python -m ibr_ref.ports`."""
+    command: Room | None = None
+    """command, EXAMPLES and goes_with: `ibr-ref render NAME`."""
+    demo: Room | None = None
+    """SIZES and NOTE (words of the table), PICTURES (how many) and `pictures()`, of `demo.picture.Picture`."""
+    bench: Room | None = None
+    """`measured(repeat, msr)`, and READS_MSR."""
+    reproduction: Room | None = None
+    """`reproduce.findings.Reproduction`."""
+    paper: int | None = None
+    """Its number for `ibr-ref reproduce`."""
+
+
+def _own(
+    name: str,
+    paper: int,
+    title: str,
+    source: str,
+    judged: tuple[str, tuple[str, ...]],
+    inputs: tuple[str, ...] = (),
+    plain_port: str = "ports",
+) -> Method:
+    """A method of this package, whose rooms are where those of all its methods are.
+
+    plain_port: of the oracle's rooms the one with its port, variants and mutants; "faults" where the port is a program.
+    """
+    return Method(
+        name=name,
+        paper=paper,
+        title=title,
+        source=source,
+        judged=judged,
+        inputs=inputs,
+        page=f"ibr_ref:{name}/method.md",
+        package=Room(f"ibr_ref.{name}"),
+        contract=Room(f"ibr_ref.{name}.contract:STAGES"),
+        cases=Room(f"ibr_ref.oracle.cases.{name}:CASES"),
+        schema=Room(f"ibr_ref.oracle.schema.{name}:SCHEMA"),
+        referee=Room(f"ibr_ref.oracle.referees.{name}:{name.capitalize()}Referee"),
+        reads=Room(f"ibr_ref.oracle.referees.reads:{name.upper()}"),
+        plain_port=Room(f"ibr_ref.oracle.{plain_port}.{name}"),
+        sample_port=Room(f"ibr_ref.ports.glsl.{name}:Port"),
+        command=Room(f"ibr_ref.cli.{name}"),
+        demo=Room(f"ibr_ref.demo.{name}"),
+        bench=Room(f"ibr_ref.bench.{name}"),
+        reproduction=Room(f"ibr_ref.reproduce.{name}:REPRODUCTION"),
+    )
+
+
+# fmt: off
+_METHODS = {method.name: method for method in (
+    _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", ("protruded",)), (), "faults"),
+    _own("splatting", 2, "Splatting of depth images", "Lee & Park 2006", ("shape", ("square", "disc")), ("normals",)),
+    _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", ("warp", "direct")), ("maps",)),
+)}
+# fmt: on
+
+
+def records() -> tuple[Method, ...]:
+    """All methods, in the papers' order; registered ones last."""
+    return tuple(_METHODS.values())
+
+
+def names() -> tuple[str, ...]:
+    """Theirs."""
+    return tuple(_METHODS)
+
+
+def named(name: str) -> Method:
+    """The method of that name. Raises ValueError with all names for another."""
+    if name not in _METHODS:
+        raise ValueError(f"method: found {name!r:.200}, allowed: {' | '.join(_METHODS)}")
+    return _METHODS[name]
+
+
+def register(method: Method) -> None:
+    """Add a method. Raises ValueError for a name that is taken."""
+    if method.name in _METHODS:
+        raise ValueError(f"method: found {method.name!r}, allowed: a name that no other method has")
+    _METHODS[method.name] = method
+
+
+@contextmanager
+def registered(method: Method) -> Iterator[None]:
+    """The same for a while."""
+    register(method)
+    try:
+        yield
+    finally:
+        del _METHODS[method.name]
