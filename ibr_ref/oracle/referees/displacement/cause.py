@@ -15,6 +15,7 @@ from ibr_ref.oracle.arithmetic.number import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.displacement import MUTANTS
+from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.programs.displacement.raster import Raster
@@ -44,11 +45,12 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> tupl
     suspects = Suspects(case, device, handed, wrong)
     for stages in _suspected(wrong.stage):
         left = [m for m in MUTANTS if m.stage in stages]
-        for sample in suspects.samples():
-            left = [m for m in left if suspects.explains(m.port, sample)]
-        if len(left) > MOST:
+        samples = suspects.samples()
+        for sample in samples:
+            left = [m for m in left if suspects.explains(m, sample)]
+        if samples and len(left) > MOST:
             return None
-        left = [m for m in left if suspects.explains(m.port, None)]
+        left = [m for m in left if suspects.explains(m, None)]
         if left:
             return tuple(Cause(name=m.name, says=m.fault) for m in left)
     return ()
@@ -80,13 +82,24 @@ class Suspects:
         some[on[:: max(1, len(on) // SOME)][: 2 * SOME]] = True
         return [few, some]
 
-    def explains(self, kind: type[Any], among: Bools | None) -> bool:
-        """Whether a program contradicts no element `among`, and certainly explains a wrong one of them."""
+    def explains(self, mutant: Mutant, among: Bools | None) -> bool:
+        """Whether a program contradicts no element `among`, and certainly explains a wrong one of them.
+
+        Nor may it in the stages from its bug on: what a wrong program takes for no input at all is not judged.
+        """
+        kind: type[Any] = mutant.port
         stages = Stages(Port(model=Model(self.case, self.device, kind), handed=self.handed, among=among))
+        if _draws_the_same_faces(kind):
+            stages.take_fragments(self.right)
+        last = STAGES.index(self.stage)
+        first = min(STAGES.index(mutant.stage), last)
         with np.errstate(all="ignore"):
-            if _draws_the_same_faces(kind):
-                stages.take_fragments(self.right)
+            for stage in STAGES[first:last]:
+                if stages.names(stage) and stages.judge(stage, clean=True).wrong.any():
+                    return False
             judgement = stages.judge(self.stage, clean=True)
+        if judgement.wrong.size != len(self.wrong):  # it draws another number of faces
+            return not judgement.wrong.any()
         sure = self.wrong & ~judgement.undecided.reshape(-1)
         if among is not None:
             sure &= among

@@ -351,8 +351,8 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: list[Number], clean: bool
     known |= nothing
     wrong = ~right & known
     undecided = _several(port.pixels, pixel) | _boundless(port.pixels, hits.pixel[hits.kept], [hits.depth[hits.kept]])
-    wrong[lost], undecided[lost] = False, True
-    wrong[port.picture.fragments.pixel[port.picture.lost]] = False
+    for many in (lost, port.picture.fragments.pixel[port.picture.lost]):
+        wrong[many], undecided[many] = False, True
     return Verdict(
         arrays=names,
         wrong=wrong,
