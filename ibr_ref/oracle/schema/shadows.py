@@ -37,7 +37,7 @@ class ShadowsParams(Model):
     bias: float
     """Of depths, in units of window depth."""
     policy: Literal["dissolve", "nearest"]
-    interpolation: Literal["linear", "projective"] = "linear"
+    interpolation: Literal["linear", "projective"]
     """Pace between two maps: even, or by the caster's depths, `scene.maps.depths`."""
     light_samples: Literal[1, 5, 9] | tuple[Vector3, ...]
     """1, 5 or 9, or world positions; `scene.light_samples` lists them all."""

@@ -57,12 +57,12 @@ def written(path: Path_) -> str:
     return "".join(f"[{name}]" if isinstance(name, int) else f".{name}" for name in path)[1:]
 
 
-def tried(folder: Path, path: Path_, value: Any) -> str:
+def tried(folder: Path, path: Path_, value: Any, blamed: str = "case.json: scene.") -> str:
     """The error of loading with that value, and the folder as it was afterwards."""
     kept = {name: (folder / name).read_bytes() for name in ("case.json", "manifest.json")}
     edit(folder, put(*path, value=value))
     try:
-        return refused(folder, "case.json: scene.")
+        return refused(folder, blamed)
     finally:
         for name, data in kept.items():
             (folder / name).write_bytes(data)
@@ -111,7 +111,8 @@ def test_every_number_that_follows(folder: Path) -> None:
     document = json.loads((folder / "case.json").read_text())
     for path in DERIVED[document["method"]]:
         for inner, value in numbers(at(document, path)):
-            tried(folder, (*path, *inner), value + 1 if isinstance(value, int) else value * 1.001 + 1e-3)
+            # The light's own numbers contradict the maps that were made under it, too: either may be found first.
+            tried(folder, (*path, *inner), value + 1 if isinstance(value, int) else value * 1.001 + 1e-3, "case.json: ")
 
 
 @pytest.mark.parametrize("name", cases.names())
