@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.displacement.contract import STAGES
 from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.judgement import TraceRow
@@ -27,21 +28,6 @@ from ibr_ref.oracle.referees.displacement.shown import lighted, shades_of
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 Field = Bounded | Ints | Bools
-
-NOTHING: dict[str, float] = {
-    "raster.face": -1,
-    "raster.patch_id": -1,
-    "raster.patch": np.nan,
-    "march.linear_index": -1,
-    "march.hit_index": -1,
-    "march.hit": np.nan,
-    "march.height_before": np.nan,
-    "march.steep": 0,
-    "shade.albedo": np.nan,
-    "shade.normal": np.nan,
-    "shade.lit": 0,
-}
-"""What arrays hold where there is no fragment, or, of shade, none that was kept (displacement/method.md, "Arrays")."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +134,7 @@ class Element:
             legal = bool(agrees[name][chosen]) if count else False
             value = np.atleast_1d(self.port.floats(name)[self.pixel]) if nothing else _values(fields[name])[chosen]
             if nothing:
-                value = np.full(value.shape, NOTHING[name])
+                value = np.full(value.shape, STAGES[name].blank)
                 legal = bool(np.array_equal(value, np.atleast_1d(self.port.floats(name)[self.pixel]), equal_nan=True))
             result.append(self._row(name, value, fields[name], legal))
         return result
