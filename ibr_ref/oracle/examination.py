@@ -12,11 +12,11 @@ from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.conventions import conventions
 from ibr_ref.oracle.device import PROFILES, Device
-from ibr_ref.oracle.judgement import Handed, Judgement, TraceRow
+from ibr_ref.oracle.judgement import Explains, Handed, Judgement, TraceRow
 from ibr_ref.oracle.referees import referee
 from ibr_ref.oracle.referees.rows import heading, text
 from ibr_ref.oracle.trials import Trial, judge, tightest
-from ibr_ref.oracle.verdict import Bias, Box, Outcome, StageVerdict, TraceStep, Verdict, Witness
+from ibr_ref.oracle.verdict import Bias, Box, Cause, Outcome, StageVerdict, TraceStep, Verdict, Witness
 from ibr_ref.scene import checks
 
 
@@ -42,12 +42,15 @@ class Examination:
 
 # A port's numbers may be anything: what overflows or is no number on the way is told as an infinite bound, or as wrong.
 @np.errstate(all="ignore")
-def examine(case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = ()) -> Examination:
+def examine(
+    case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = (), name_causes: bool = True
+) -> Examination:
     """Judge a port's arrays, as `submission_from_arrays` or `load_submission` hands them on.
 
     profile: the device that the port declares; without one, the tightest that explains every element is sought, and a
     port that not even the loosest explains fails by that. problems: what made files of the submission unusable; with any,
-    the verdict is INCONCLUSIVE, because what could not be read may be wrong. Raises ValueError for an unknown profile.
+    the verdict is INCONCLUSIVE, because what could not be read may be wrong. name_causes: whether known bugs that explain
+    a FAIL are looked for, which takes seconds. Raises ValueError for an unknown profile.
     """
     if profile is not None:
         checks.choice("device", profile, list(PROFILES))
@@ -79,6 +82,8 @@ def examine(case: Case, handed: Handed, *, profile: str | None = None, problems:
         )
     if wrong is not None:
         fields["first_wrong_stage"] = wrong.stage
+        if name_causes:
+            fields["causes"] = _causes(case, trial.device, handed, wrong)
         if image is not None and image.wrong.any():
             fields["conventions"] = conventions(case, trial.device, handed, int(image.wrong.sum()))
     else:
@@ -157,6 +162,12 @@ def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -
             for r in rows
         ),
     )
+
+
+def _causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...] | None:
+    """Of the methods whose known bugs are programs."""
+    judge_of = referee(case.method)
+    return judge_of.causes(case, device, handed, wrong) if isinstance(judge_of, Explains) else None
 
 
 def _finite(number: float | None) -> float | None:

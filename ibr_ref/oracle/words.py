@@ -21,6 +21,7 @@ def words(verdict: Verdict, *, trace: bool = True) -> str:
     for witness in verdict.witnesses:
         lines.append(_witness_line(witness, first=witness is verdict.witness))
         lines += folded(_trace_lines(witness)) if trace else []
+    lines += _causes(verdict)
     for convention in verdict.conventions:
         if convention.explains:
             left = "all of it" if convention.wrong == 0 else f"all but {convention.wrong:,} pixels"
@@ -36,6 +37,19 @@ def words(verdict: Verdict, *, trace: bool = True) -> str:
         )
         lines.append(f"  Undecided pixels: {100 * verdict.undecided_share:.3f} %{width}.")
     return "\n".join(lines)
+
+
+def _causes(verdict: Verdict) -> list[str]:
+    """Which known bugs explain it."""
+    if verdict.causes is None:
+        return []
+    if not verdict.causes:
+        return ["  No known bug explains all of it."]
+    if len(verdict.causes) == 1:
+        (cause,) = verdict.causes
+        return [f"  Explained by a known bug, and by no other: {cause.name}. {cause.says}"]
+    lines = [f"  Explained by {len(verdict.causes)} known bugs, which this case does not tell apart:"]
+    return lines + [f"    {cause.name}: {cause.says}" for cause in verdict.causes]
 
 
 def _headline(verdict: Verdict) -> str:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from functools import cache
 
 from ibr_ref.oracle.accept.bytes import color_bytes
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.displacement.mutants import MUTANTS
-from ibr_ref.oracle.ports.faults import Mutant
+from ibr_ref.oracle.faults.displacement import MUTANTS
+from ibr_ref.oracle.faults.kinds import Mutant
 from tests.oracle.displacement.drawn import REFEREE, SMALL, case, draw, wrong
 
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import IEEE32
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.displacement.mutants import MUTANTS
+from ibr_ref.oracle.faults.displacement import MUTANTS
 from tests.oracle.displacement.drawn import REFEREE, SMALL, Arrays, case, draw, reference
 
 
@@ -125,6 +125,6 @@ def test_candidates_are_computed_once_a_case_and_device() -> None:
     what = replace(case("displacement-mapped"))
     first = REFEREE.judge_image(what, IEEE32, {"color": what.frame.color})
     assert not first.wrong.any()
-    from ibr_ref.oracle.referees.displacement.image import candidates_of
+    from ibr_ref.oracle.referees.displacement.picture import picture_of
 
-    assert candidates_of(what, IEEE32) is candidates_of(what, IEEE32)
+    assert picture_of(what, IEEE32) is picture_of(what, IEEE32)

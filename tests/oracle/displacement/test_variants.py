@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.ports.displacement.variants import VARIANTS
+from ibr_ref.oracle.programs.displacement.variants import VARIANTS
 from tests.oracle.devices import random_policy
 from tests.oracle.displacement.drawn import REFEREE, SMALL, case, draw, image, profiles_from, wrong
 
