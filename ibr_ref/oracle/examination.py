@@ -12,11 +12,11 @@ from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.conventions import conventions
 from ibr_ref.oracle.device import PROFILES, Device
-from ibr_ref.oracle.judgement import Explains, Handed, Judgement, TraceRow
+from ibr_ref.oracle.judgement import Explains, Explanation, Handed, Judgement, TraceRow
 from ibr_ref.oracle.referees import referee
 from ibr_ref.oracle.referees.rows import heading, text
 from ibr_ref.oracle.trials import Trial, judge, tightest
-from ibr_ref.oracle.verdict import Bias, Box, Cause, Outcome, StageVerdict, TraceStep, Verdict, Witness
+from ibr_ref.oracle.verdict import Bias, Box, Outcome, StageVerdict, TraceStep, Verdict, Witness
 from ibr_ref.scene import checks
 
 
@@ -82,8 +82,9 @@ def examine(
         )
     if wrong is not None:
         fields["first_wrong_stage"] = wrong.stage
-        if name_causes:
-            fields["causes"] = _causes(case, trial.device, handed, wrong)
+        explanation = _explanation(case, trial.device, handed, wrong) if name_causes else None
+        if explanation is not None:
+            fields |= {"causes": explanation.causes, "suspects": explanation.given_up_after}
         if image is not None and image.wrong.any():
             fields["conventions"] = conventions(case, trial.device, handed, int(image.wrong.sum()))
     else:
@@ -164,7 +165,7 @@ def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -
     )
 
 
-def _causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...] | None:
+def _explanation(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
     """Of the methods whose known bugs are programs."""
     judge_of = referee(case.method)
     return judge_of.causes(case, device, handed, wrong) if isinstance(judge_of, Explains) else None

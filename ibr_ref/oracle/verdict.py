@@ -136,6 +136,9 @@ class Verdict(_Record):
     causes: tuple[Cause, ...] | None = None
     """Known bugs that explain the stage; several: this case does not tell them apart; none: no known one does. None where
     none was looked for."""
+    suspects: int | None = None
+    """How many known bugs were tried before the search was ended for what it costs, so that others may explain the stage
+    too; None where all were."""
     conventions: tuple[Convention, ...] = ()
     """Those that were worth a judgement."""
     biases: tuple[Bias, ...] = ()

@@ -63,8 +63,10 @@ class Bounds(Decisions):
     def rounded(self, x: Number, units: float) -> Number:
         """After a rounding; an exact 0 stays exact."""
         size = np.abs(x.value) + x.deviation
-        error = x.error + units * UNIT * size + np.where(size > 0.0, TINY, 0.0)
-        return Number(self, x.value, error, x.slopes, x.lane)
+        added = units * UNIT * size + TINY * (size > 0.0)
+        result = Number(self, x.value, x.error + added, x.slopes, x.lane)
+        result._deviation = x.deviation + added
+        return result
 
     def widened(self, x: Any, quotients: float = 0.0, operations: float = 0.0) -> Number:
         """With so many roundings of its size more: those of another form that are not what that form's own bounds say."""
@@ -86,7 +88,10 @@ class Bounds(Decisions):
         """A b, not rounded."""
         a, b = self.of(a), self.of(b)
         with np.errstate(invalid="ignore"):
-            slopes = {k: s * b.value + a.value * t for k, s, t in self.pairs(a, b)}
+            slopes = {k: s * b.value for k, s in a.slopes.items()}
+            for k, t in b.slopes.items():
+                along = a.value * t
+                slopes[k] = slopes[k] + along if k in slopes else along
             error = np.abs(a.value) * b.error + a.error * np.abs(b.value) + a.deviation * b.deviation
         error = np.where(np.isnan(error), np.inf, error)
         return Number(self, a.value * b.value, error, slopes, self.lane(a, b))
