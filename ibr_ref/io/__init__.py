@@ -1,10 +1,12 @@
 """Images, meshes, depth images, stage dumps: everything that touches a file."""
 
+from ibr_ref.io.depth_sets import read_depth_cameras, read_depth_set, write_depth_set
 from ibr_ref.io.frame import Frame
 from ibr_ref.io.images import check_image_writable, read_image, write_image
 from ibr_ref.io.meshes import read_mesh
 from ibr_ref.io.msr import has_msr_picture, read_msr, read_msr_cameras
 from ibr_ref.io.outputs import check_writable
+from ibr_ref.io.point_cloud import write_point_cloud
 from ibr_ref.io.simple_texture import read_simple_texture, write_simple_texture
 from ibr_ref.io.textures import read_color, read_height, read_normal, read_normal_height
 from ibr_ref.io.upright import read_upright
@@ -15,6 +17,8 @@ __all__ = [
     "check_writable",
     "has_msr_picture",
     "read_color",
+    "read_depth_cameras",
+    "read_depth_set",
     "read_height",
     "read_image",
     "read_mesh",
@@ -24,6 +28,8 @@ __all__ = [
     "read_normal_height",
     "read_simple_texture",
     "read_upright",
+    "write_depth_set",
     "write_image",
+    "write_point_cloud",
     "write_simple_texture",
 ]

@@ -1,0 +1,78 @@
+"""Files of depths or disparities, told apart by content."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from io import BytesIO
+from os import PathLike
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.io import png
+from ibr_ref.io.depth_codes import depth_codes
+from ibr_ref.io.files import contents, naming
+from ibr_ref.io.sizes import check_size
+
+_NPY = b"\x93NUMPY"
+_COLMAP = re.compile(rb"(\d{1,9})&(\d{1,9})&(\d{1,9})&")
+_ALLOWED = "a PNG of whole numbers, NPY, or a COLMAP map"
+
+
+def read_depth_map(path: str | PathLike[str]) -> tuple[NDArray[np.float64], bool]:
+    """The numbers of a map (H, W) as they are stored, row 0 on top, and whether the file has whole numbers.
+
+    Raises OSError or ValueError, in one line that starts with the path, for what cannot be read or is not all there.
+    """
+    data = contents(path)
+    if data.startswith(png.SIGNATURE):
+        return depth_codes(path)[0], True
+    with naming(path):
+        values = _decoder(data)(data)
+        if values.ndim == 3 and (values == values[..., :1]).all():
+            values = values[..., 0]
+        if values.ndim != 2 or values.dtype.kind not in "uif":
+            found = f"an array {values.shape} of {values.dtype}"
+            raise ValueError(f"found {found}, allowed for depths: (H, W) of whole numbers or floats")
+        return values.astype(np.float64), values.dtype.kind != "f"
+
+
+def _decoder(data: bytes) -> Callable[[bytes], NDArray[np.generic]]:
+    if data.startswith(_NPY):
+        return _npy
+    if _COLMAP.match(data[:32]):
+        return _colmap
+    raise ValueError(f"found a file that starts with {data[:8]!r}, allowed for depths: {_ALLOWED}")
+
+
+def _npy(data: bytes) -> NDArray[np.generic]:
+    """A NumPy array: no pickles, and the sizes agree before anything is allocated."""
+    file = BytesIO(data)
+    version = np.lib.format.read_magic(file)
+    if version not in ((1, 0), (2, 0)):
+        raise ValueError(f"found NPY version {version}, allowed: 1.0 and 2.0")
+    read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    shape, fortran, dtype = read(file)
+    if dtype.kind not in "uif" or len(shape) not in (2, 3) or min(shape) < 1 or max(shape[2:], default=1) > 4:
+        raise ValueError(f"found an array {shape} of {dtype}, allowed for depths: (H, W) of whole numbers or floats")
+    check_size(shape[1], shape[0])
+    needed, there = math.prod(shape) * dtype.itemsize, len(data) - file.tell()
+    if needed != there:
+        raise ValueError(f"found {there} bytes of numbers, {needed} needed for the shape {shape} in its header")
+    return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape, order="F" if fortran else "C")
+
+
+def _colmap(data: bytes) -> NDArray[np.generic]:
+    """A dense map of COLMAP: `WIDTH&HEIGHT&CHANNELS&`, then 32-bit floats, little-endian, row after row."""
+    header = _COLMAP.match(data[:32])
+    assert header is not None
+    width, height, channels = map(int, header.groups())
+    if channels != 1:
+        raise ValueError(f"found a COLMAP map of {channels} channels, allowed for depths: 1")
+    check_size(width, height)
+    there, needed = len(data) - header.end(), 4 * width * height
+    if there != needed:
+        raise ValueError(f"found {there} bytes of a COLMAP map, {needed} needed for its {width} x {height} pixels")
+    return np.frombuffer(data, "<f4", offset=header.end()).reshape(height, width)
