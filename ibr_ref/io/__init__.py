@@ -8,6 +8,7 @@ from ibr_ref.io.outputs import check_writable
 from ibr_ref.io.simple_texture import read_simple_texture, write_simple_texture
 from ibr_ref.io.textures import read_color, read_height, read_normal, read_normal_height
 from ibr_ref.io.upright import read_upright
+from ibr_ref.io.values import read_values
 
 __all__ = [
     "Frame",
@@ -24,6 +25,7 @@ __all__ = [
     "read_normal_height",
     "read_simple_texture",
     "read_upright",
+    "read_values",
     "write_image",
     "write_simple_texture",
 ]
