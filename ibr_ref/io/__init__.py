@@ -10,6 +10,7 @@ from ibr_ref.io.point_cloud import write_point_cloud
 from ibr_ref.io.simple_texture import read_simple_texture, write_simple_texture
 from ibr_ref.io.textures import read_color, read_height, read_normal, read_normal_height
 from ibr_ref.io.upright import read_upright
+from ibr_ref.io.values import read_values
 
 __all__ = [
     "Frame",
@@ -28,6 +29,7 @@ __all__ = [
     "read_normal_height",
     "read_simple_texture",
     "read_upright",
+    "read_values",
     "write_depth_set",
     "write_image",
     "write_point_cloud",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
 from io import BytesIO
 from os import PathLike
 
@@ -15,14 +14,16 @@ from ibr_ref.io import png
 from ibr_ref.io.depth_codes import depth_codes
 from ibr_ref.io.files import contents, naming
 from ibr_ref.io.sizes import check_size
+from ibr_ref.io.values import read_values
 
 _NPY = b"\x93NUMPY"
 _COLMAP = re.compile(rb"(\d{1,9})&(\d{1,9})&(\d{1,9})&")
-_ALLOWED = "a PNG of whole numbers, NPY, or a COLMAP map"
 
 
 def read_depth_map(path: str | PathLike[str]) -> tuple[NDArray[np.float64], bool]:
     """The numbers of a map (H, W) as they are stored, row 0 on top, and whether the file has whole numbers.
+
+    PNG, NPY, a dense map of COLMAP, EXR, PFM or TIFF.
 
     Raises OSError or ValueError, in one line that starts with the path, for what cannot be read or is not all there.
     """
@@ -30,21 +31,19 @@ def read_depth_map(path: str | PathLike[str]) -> tuple[NDArray[np.float64], bool
     if data.startswith(png.SIGNATURE):
         return depth_codes(path)[0], True
     with naming(path):
-        values = _decoder(data)(data)
+        own = _npy if data.startswith(_NPY) else _colmap if _COLMAP.match(data[:32]) else None
+        values = None if own is None else own(data)
+    if values is None:
+        values = read_values(path)
+    with naming(path):
         if values.ndim == 3 and (values == values[..., :1]).all():
             values = values[..., 0]
         if values.ndim != 2 or values.dtype.kind not in "uif":
             found = f"an array {values.shape} of {values.dtype}"
-            raise ValueError(f"found {found}, allowed for depths: (H, W) of whole numbers or floats")
+            raise ValueError(
+                f"found {found}, allowed for depths: (H, W), or equal channels, of whole numbers or floats"
+            )
         return values.astype(np.float64), values.dtype.kind != "f"
-
-
-def _decoder(data: bytes) -> Callable[[bytes], NDArray[np.generic]]:
-    if data.startswith(_NPY):
-        return _npy
-    if _COLMAP.match(data[:32]):
-        return _colmap
-    raise ValueError(f"found a file that starts with {data[:8]!r}, allowed for depths: {_ALLOWED}")
 
 
 def _npy(data: bytes) -> NDArray[np.generic]:
