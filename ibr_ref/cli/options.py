@@ -72,7 +72,14 @@ class Law(NamedTuple):
 
 
 class Cameras(tuple[int, ...]):
-    """Their numbers."""
+    """Their numbers; none: all that there are."""
+
+    def __str__(self) -> str:
+        return _joined(self) or "all"
+
+
+class Numbers(tuple[float, ...]):
+    """As many as a matrix or a pinhole has."""
 
     def __str__(self) -> str:
         return _joined(self)
@@ -175,11 +182,25 @@ def law(text: str) -> Law:
 
 
 @_reads
+def intrinsics(text: str) -> Numbers:
+    """FX,FY,CX,CY of a pinhole, pixels."""
+    return Numbers(_numbers(text, 4, "525,525,319.5,239.5"))
+
+
+@_reads
+def pose(text: str) -> Numbers:
+    """A matrix, row by row: 12 numbers, or 16."""
+    return Numbers(_numbers(text, 16 if text.count(",") == 15 else 12, "1,0,0,0,0,1,0,0,0,0,1,0"))
+
+
+@_reads
 def cameras(text: str) -> Cameras:
-    """I,J,..: numbers of cameras."""
+    """I,J,..: numbers of cameras; or all."""
+    if text == "all":
+        return Cameras()
     parts = text.split(",")
     if not all(part[:1].isdigit() and _WHOLE.fullmatch(part) for part in parts):
-        raise _bad(text, "numbers of cameras, such as 0 or 0,1")
+        raise _bad(text, "numbers of cameras, such as 0 or 0,1, or all")
     return Cameras(map(int, parts))
 
 

@@ -14,7 +14,7 @@ from ibr_ref.io import png
 from ibr_ref.io.depth_codes import depth_codes
 from ibr_ref.io.files import contents, naming
 from ibr_ref.io.sizes import check_size
-from ibr_ref.io.values import read_values
+from ibr_ref.io.values import is_exr, is_pfm, is_tiff, read_values
 
 _NPY = b"\x93NUMPY"
 _COLMAP = re.compile(rb"(\d{1,9})&(\d{1,9})&(\d{1,9})&")
@@ -33,10 +33,13 @@ def read_depth_map(path: str | PathLike[str]) -> tuple[NDArray[np.float64], bool
     with naming(path):
         own = _npy if data.startswith(_NPY) else _colmap if _COLMAP.match(data[:32]) else None
         values = None if own is None else own(data)
+        if values is None and not (is_exr(data) or is_pfm(data) or is_tiff(data)):
+            found = f"a file that starts with {data[:8]!r}"
+            raise ValueError(f"found {found}, allowed for depths: PNG, NPY, EXR, PFM, TIFF or a map of COLMAP")
     if values is None:
         values = read_values(path)
     with naming(path):
-        if values.ndim == 3 and (values == values[..., :1]).all():
+        if values.ndim == 3 and ((values == values[..., :1]) | (values != values)).all():
             values = values[..., 0]
         if values.ndim != 2 or values.dtype.kind not in "uif":
             found = f"an array {values.shape} of {values.dtype}"

@@ -7,6 +7,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from ibr_ref.io.depth_sets.conventions import Conventions, Options, checked, settled
 from ibr_ref.io.depth_sets.formats import format_of
 from ibr_ref.io.depth_sets.view import FARTHEST, View, depth_image, view_camera
@@ -74,14 +77,21 @@ def read_depth_cameras(
     views: Sequence[int] | None = None,
     near: float = 0.1,
     far: float = 100.0,
+    pose: ArrayLike | None = None,
     **options: Any,
 ) -> tuple[Camera, ...]:
     """Read the cameras alone, those of pictures without a depth map too; None: all. `Camera.fitted` finds other planes.
 
-    options: those of `read_depth_set`; the errors as there.
+    pose: (4, 4) or (3, 4), where they stand instead, in the set's own axes and direction. options: those of
+    `read_depth_set`; the errors as there.
     """
     set_ = _opened(path, format, Options(**options))
-    return tuple(view_camera(view, set_.conventions, near, far) for view in set_.chosen(views, with_depth=False))
+    chosen = set_.chosen(views, with_depth=False)
+    if pose is not None:
+        rows = 4 if np.shape(pose) == (4, 4) else 3
+        matrix = np.concatenate([checks.matrix("pose", pose, rows, 4), np.eye(4)[rows:]])
+        chosen = (view._replace(pose=matrix) for view in chosen)
+    return tuple(view_camera(view, set_.conventions, near, far) for view in chosen)
 
 
 class _Set(NamedTuple):

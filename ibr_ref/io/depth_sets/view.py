@@ -68,7 +68,7 @@ def depth_image(view: View, conventions: Conventions, options: Options) -> tuple
     It has the size of the depth map: colours of another size are looked up at the centres of its pixels.
     """
     if view.depth is None:
-        raise ValueError(f"{checks.named(view.where)}: found no depth map, allowed: a picture that has one")
+        raise FileNotFoundError(f"{checks.named(view.where)}: found no depth map, allowed: a picture that has one")
     color = read_color(view.color, exif=False)
     stored, whole = read_depth_map(view.depth)
     with naming(view.depth):
