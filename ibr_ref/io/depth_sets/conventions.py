@@ -93,6 +93,6 @@ def settled(format_: Format, options: Options) -> Conventions:
     if open_:
         allowed = "; ".join(f"{name} {' | '.join(CHOICES[name])}" for name in open_)
         raise ValueError(
-            f"{' and '.join(open_)}: found None, which the format {format_.name} leaves open, allowed: {allowed}"
+            f"{', '.join(open_)}: found None, which the format {format_.name} leaves open, allowed: {allowed}"
         )
     return Conventions(**result)

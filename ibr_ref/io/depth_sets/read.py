@@ -120,4 +120,10 @@ def _opened(path: str | PathLike[str], name: str | None, options: Options) -> _S
     options = checked(options)
     format_ = format_of(Path(path), name)
     conventions = settled(format_, options)
-    return _Set(Path(path), format_.views(Path(path), options), conventions, options)
+    try:
+        views = format_.views(Path(path), options)
+    except OSError as error:
+        if error.strerror:  # of a folder: the system's own message does not start with its name
+            raise type(error)(f"{checks.named(error.filename or path)}: cannot be read ({error.strerror})") from None
+        raise
+    return _Set(Path(path), views, conventions, options)
