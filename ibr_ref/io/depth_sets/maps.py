@@ -17,6 +17,10 @@ from ibr_ref.io.sizes import check_size
 from ibr_ref.io.values import is_exr, is_pfm, is_tiff, read_values
 
 _NPY = b"\x93NUMPY"
+_NPY_HEADERS = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+}
 _COLMAP = re.compile(rb"(\d{1,9})&(\d{1,9})&(\d{1,9})&")
 
 
@@ -52,11 +56,12 @@ def read_depth_map(path: str | PathLike[str]) -> tuple[NDArray[np.float64], bool
 def _npy(data: bytes) -> NDArray[np.generic]:
     """A NumPy array: no pickles, and the sizes agree before anything is allocated."""
     file = BytesIO(data)
-    version = np.lib.format.read_magic(file)
-    if version not in ((1, 0), (2, 0)):
-        raise ValueError(f"found NPY version {version}, allowed: 1.0 and 2.0")
-    read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-    shape, fortran, dtype = read(file)
+    try:
+        version = np.lib.format.read_magic(file)
+        read = _NPY_HEADERS[version]
+        shape, fortran, dtype = read(file)
+    except Exception:  # it is a Python expression, and can be wrong in any way
+        raise ValueError(f"found an NPY header {data[:60]!r}, allowed: one of version 1.0 or 2.0") from None
     if dtype.kind not in "uif" or len(shape) not in (2, 3) or min(shape) < 1 or max(shape[2:], default=1) > 4:
         raise ValueError(f"found an array {shape} of {dtype}, allowed for depths: (H, W) of whole numbers or floats")
     check_size(shape[1], shape[0])
