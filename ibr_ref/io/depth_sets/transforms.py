@@ -4,7 +4,7 @@ A document of `frames`, each with file_path, depth_file_path (nerfstudio) or dep
 4 x 4, camera to world, OpenGL's axes; and, in the frame or for all of them, fl_x, fl_y, cx, cy, w, h, or camera_angle_x and
 camera_angle_y, radians. Pixels' centres are half-integers. integer_depth_scale (instant-ngp) is the world units of a stored
 one; without it whole numbers need depth_scale (nerfstudio's own default is 0.001). applied_scale, by which nerfstudio has
-scaled the poses, scales the depths. near and far, which `write_depth_set` adds, are the planes of a frame's camera.
+scaled the poses, scales the depths. skew, near and far are what `write_depth_set` adds.
 """
 
 from __future__ import annotations
@@ -29,7 +29,19 @@ NAME = "transforms.json"
 _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "OPENCV_FISHEYE", "SIMPLE_RADIAL", "RADIAL", "FULL_OPENCV")
 """Of a camera: pinholes, if all that bends is 0."""
 _BENDS = ("k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2")
-_OF_A_CAMERA = ("fl_x", "fl_y", "cx", "cy", "w", "h", "camera_angle_x", "camera_angle_y", "camera_model", *_BENDS)
+_OF_A_CAMERA = (
+    "fl_x",
+    "fl_y",
+    "cx",
+    "cy",
+    "w",
+    "h",
+    "camera_angle_x",
+    "camera_angle_y",
+    "camera_model",
+    "skew",
+    *_BENDS,
+)
 _MOST = 1e9
 
 
@@ -95,7 +107,8 @@ def _intrinsics(frame: dict[str, Any]) -> tuple[NDArray[np.float64], tuple[int, 
     f_x = _focal(frame, "fl_x", "camera_angle_x", None if size is None else size[0])
     f_y = _focal(frame, "fl_y", "camera_angle_y", None if size is None else size[1], f_x)
     c_x, c_y = (_center(frame, name, None if size is None else size[axis]) for axis, name in enumerate(("cx", "cy")))
-    return pinhole(f_x, f_y, c_x, c_y), size
+    skew = number(frame, "skew", low=-_MOST, high=_MOST) if "skew" in frame else 0.0
+    return pinhole(f_x, f_y, c_x, c_y, skew), size
 
 
 def _size(frame: dict[str, Any]) -> tuple[int, int] | None:

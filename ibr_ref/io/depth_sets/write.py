@@ -27,10 +27,11 @@ def write_depth_set(
 
     Colours are kept in 8 bits; masks and depths to the last bit, as float64, 0 off the mask; near, far and intrinsics too,
     poses to rounding. depth_scale: depths as 16-bit PNG instead, depth/NNN.png, in whole numbers of so many world units
-    (integer_depth_scale of instant-ngp), to half a unit.
+    (integer_depth_scale of instant-ngp), to half a unit. A skew of intrinsics is written under that name, which other
+    programs do not look for.
 
     What is there under these names is replaced, transforms.json last. Raises ValueError, with the folder and the image, for
-    orthographic or skewed cameras, which the file has no words for, and depths that are not 1 to 65535 units; OSError where
+    orthographic cameras, which the file has no words for, and depths that are not 1 to 65535 units; OSError where
     nothing can be written.
     """
     folder = Path(folder)
@@ -66,13 +67,14 @@ def write_depth_set(
 def _frame(image: DepthImage, color: str, depth: str) -> dict[str, Any]:
     camera = image.camera
     (f_x, skew, c_x), (_, f_y, c_y) = camera.intrinsics[:2].tolist()
-    if not camera.perspective or skew != 0.0 or min(f_x, f_y) <= 0.0:
+    if not camera.perspective or min(f_x, f_y) <= 0.0:
         kind = f"intrinsics {camera.intrinsics.tolist()}" if camera.perspective else "an orthographic one"
-        raise checks.reject("camera", kind, "a pinhole without skew, focal lengths above 0")
+        raise checks.reject("camera", kind, "a pinhole, focal lengths above 0")
     return {
         "file_path": color,
         "depth_file_path": depth,
         **{"fl_x": f_x, "fl_y": f_y, "cx": c_x, "cy": c_y, "w": camera.width, "h": camera.height},
+        **({} if skew == 0.0 else {"skew": skew}),
         **{"near": camera.near, "far": camera.far},
         "transform_matrix": camera.world_from_view.tolist(),
     }

@@ -189,7 +189,7 @@ def test_colmap(tmp_path, binary, place):
     seen = shots.shots()
     set_ = io.read_depth_set(writers.colmap(tmp_path / "dense", seen, binary, place))
     check(set_, seen, 1e-6)
-    assert set_.names == ("view 0.png", "view 1.png", "view 2.png")
+    assert set_.names == ("cam/0.png", "cam/1.png", "cam/2.png")
 
 
 def test_colmap_with_photometric_maps_and_another_camera(tmp_path):

@@ -180,3 +180,26 @@ def test_points_lie_on_the_surface_that_was_seen():
     )
     image = DepthImage(color=shot.color / 255, depth=shot.depth, camera=camera, mask=shot.valid)
     assert np.abs(image.points - shot.points[shot.valid]).max() < 1e-12
+
+
+def test_a_measured_camera_comes_back(tmp_path):
+    """With a skew, and a rotation that is one to 1e-4 alone, as those of the MSR 3D Video set are."""
+    from ibr_ref.scene import Camera, DepthImage
+
+    shot = shots.shots()[1]
+    r = np.diag([1.0, -1.0, -1.0]) @ shot.rotation.T + np.array([[0, 1e-4, 0], [0, 0, 0], [0, 0, 0]])
+    camera = Camera.calibrated(
+        intrinsics=shot.k + 0.6 * np.eye(3, k=1) * [[1], [0], [0]],
+        rotation=r,
+        translation=(0.3, 20, -7),
+        near=1,
+        far=9,
+        width=shots.WIDTH,
+        height=shots.HEIGHT,
+    )
+    image = DepthImage(color=shot.color / 255, depth=shot.depth, camera=camera, mask=shot.valid)
+    io.write_depth_set(tmp_path, [image])
+    (again,) = io.read_depth_set(tmp_path)
+    assert again.camera.intrinsics[0, 1] == 0.6
+    assert np.abs(again.points - image.points).max() < 1e-12
+    assert np.array_equal(again.color, image.color)

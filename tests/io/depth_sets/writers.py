@@ -123,7 +123,7 @@ MODELS = {"SIMPLE_PINHOLE": 0, "PINHOLE": 1, "SIMPLE_RADIAL": 2, "OPENCV": 4}
 def colmap(folder, shots, binary=True, place="sparse", model="PINHOLE", bend=0.0, kind="geometric"):
     """A workspace after `image_undistorter` and `patch_match_stereo`."""
     (folder / place).mkdir(parents=True)
-    (folder / "stereo" / "depth_maps").mkdir(parents=True)
+    (folder / "stereo" / "depth_maps" / "cam").mkdir(parents=True)
     height, width = shots[0].depth.shape
     cameras, images = [], []
     for i, shot in enumerate(shots):
@@ -132,9 +132,9 @@ def colmap(folder, shots, binary=True, place="sparse", model="PINHOLE", bend=0.0
         parameters = {"PINHOLE": [f_x, f_y, c_x, c_y], "SIMPLE_RADIAL": [f_x, c_x, c_y, bend],
                       "OPENCV": [f_x, f_y, c_x, c_y, bend, 0.0, 0.0, 0.0]}[model]  # fmt: skip
         cameras.append((i + 1, MODELS[model], width, height, parameters))
-        images.append((10 - i, quaternion(r), -r @ shot.center, i + 1, f"view {i}.png", i))
-        png(folder / "images" / f"view {i}.png", shot.color)
-        (folder / "stereo" / "depth_maps" / f"view {i}.png.{kind}.bin").write_bytes(colmap_map(shot.depth))
+        images.append((10 - i, quaternion(r), -r @ shot.center, i + 1, f"cam/{i}.png", i))
+        png(folder / "images" / f"cam/{i}.png", shot.color)
+        (folder / "stereo" / "depth_maps" / f"cam/{i}.png.{kind}.bin").write_bytes(colmap_map(shot.depth))
     write = _colmap_bin if binary else _colmap_txt
     write(folder / place, cameras, images)
     return folder
