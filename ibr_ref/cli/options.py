@@ -40,7 +40,7 @@ class Vector(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """A size in world units, or a place on a plane."""
+    """A size in world units, a place on a plane, or a range."""
 
     x: float
     y: float
@@ -166,6 +166,12 @@ def vector(text: str) -> Vector:
 def pair(text: str) -> Pair:
     """W,H in world units, or the place X,Y of an object."""
     return Pair(*_numbers(text, 2, "0.3,0.2"))
+
+
+@_reads
+def one_or_two(text: str) -> Pair:
+    """A, which stands for A,A, or A,B."""
+    return Pair(*_numbers(text if "," in text else f"{text},{text}", 2, "30 or 20,30"))
 
 
 @_reads

@@ -33,12 +33,27 @@ def read_image(path: str | PathLike[str], exif: bool = True) -> NDArray[np.float
     is not all there, or has no pixels or more than 2^28 (the header is asked before anything is decoded).
     """
     data = contents(path)
+    with naming(path):
+        return decoded(data, exif)
+
+
+def decoded(data: bytes, exif: bool = True) -> NDArray[np.float64]:
+    """What `read_image` returns of a file's bytes. Raises ValueError without the path."""
     for codec in _CODECS:
         if data.startswith(codec.SIGNATURE):
-            with naming(path):
-                image = codec.decode(data)
-                return upright(image, orientation(codec.exif(data))) if exif else image
-    raise ValueError(f"{named(path)}: found a file that starts with {data[:8]!r}, allowed: a PNG or JPEG image")
+            image = codec.decode(data)
+            return upright(image, orientation(codec.exif(data))) if exif else image
+    raise ValueError(f"found a file that starts with {data[:8]!r}, allowed: a PNG or JPEG image")
+
+
+def is_picture(data: bytes) -> bool:
+    """Whether a file starts as a PNG or JPEG image."""
+    return any(data.startswith(codec.SIGNATURE) for codec in _CODECS)
+
+
+def white(data: bytes) -> float:
+    """The stored number of white, 2^bits - 1, of a file that `decoded` accepts."""
+    return 2.0 ** png.bits(data) - 1.0 if data.startswith(png.SIGNATURE) else 255.0
 
 
 def write_image(path: str | PathLike[str], image: ArrayLike, bits: int = 8) -> None:

@@ -58,6 +58,12 @@ def decode(data: bytes) -> NDArray[np.float64]:
     return _samples(_joined(chunks), header)
 
 
+def bits(data: bytes) -> int:
+    """Of the samples of a file that `decode` accepts; of a palette's colours 8."""
+    header = _header(data)
+    return 8 if header.color_type == 3 else header.bits
+
+
 def exif(data: bytes) -> bytes | None:
     """The Exif tags of a file that `decode` accepts."""
     return next((body for kind, body in _chunks(data) if kind == b"eXIf"), None)
