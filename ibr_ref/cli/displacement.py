@@ -66,7 +66,7 @@ class FaceSet(StrEnum):
 
 
 def command(
-    out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
+    out: options.Out,
     height: Annotated[
         Path | None,
         typer.Option(help="Height map, white is high: PNG, JPEG, TIFF, GeoTIFF, EXR, PFM, .hgt, .raw, .r16, .r32."),
@@ -171,6 +171,7 @@ def command(
     distance_layers: Annotated[
         int, typer.Option(parser=options.whole, help="donnelly: layers of the distance texture.")
     ] = 32,
+    bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
@@ -179,7 +180,7 @@ def command(
         from ibr_ref import displacement, io
         from ibr_ref.scene import Camera, Light
 
-        io.check_image_writable(out)
+        io.check_image_writable(out, bits)
         if stages is not None:
             io.check_writable(stages)
         heights, normals = base_polygon.read_maps(
@@ -232,7 +233,7 @@ def command(
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
-        frame.save(out)
+        frame.save(out, bits)
     emptiness.say(frame, lambda: displacement.culled(scene, params))
 
 
@@ -246,7 +247,9 @@ def goes_with() -> dict[str, Beside]:
     walls = READ_BY["steep_threshold"]
     return {
         **{name: read(name) for name in signature(command).parameters if name in READ_BY},
-        **always("out", "height", "color", "invert_height", "height_scale", "eye", "target", "fov", "near", "far"),
+        **always(
+            "out", "bits", "height", "color", "invert_height", "height_scale", "eye", "target", "fov", "near", "far"
+        ),
         **always("no_exif", "light", "size", "shadow_steps", "method", "stages"),
         **{
             name: Beside("it says how --height is read", {"height": GIVEN})

@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterable
 from enum import StrEnum
 from functools import wraps
+from pathlib import Path
 from typing import Annotated, NamedTuple, TypeVar
 
 import typer
@@ -141,6 +142,8 @@ def whole(text: str) -> int:
     return int(text)
 
 
+Out = Annotated[Path, typer.Option(help="The picture: .png, .jpg, or .exr (floats; needs ibr_ref[io]).")]
+Bits = Annotated[int, typer.Option(parser=whole, help="Of each colour in a .png: 8 or 16.")]
 Near = Annotated[
     float | None, typer.Option(parser=number, help="Distance of the near plane. Without: before all that is there.")
 ]

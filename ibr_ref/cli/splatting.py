@@ -49,7 +49,7 @@ class Method(StrEnum):
 
 
 def command(
-    out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
+    out: options.Out,
     msr: Annotated[Path | None, typer.Option(help="A folder of MSR 3D Video (calibParams-*.txt, images).")] = None,
     cameras: Annotated[
         options.Cameras,
@@ -141,6 +141,7 @@ def command(
     report: Annotated[
         bool, typer.Option("--report", help="Print coverage, holes, overdraw, and the difference to the photograph.")
     ] = False,
+    bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
     """Splatting of reference images with depth (Lee & Park 2006) from a new view: of photographs, files, or a mesh."""
@@ -153,7 +154,7 @@ def command(
         from ibr_ref import io, splatting
         from ibr_ref.scene import Light
 
-        io.check_image_writable(out)
+        io.check_image_writable(out, bits)
         if stages is not None:
             io.check_writable(stages)
         photograph: DepthImage | None = None
@@ -186,7 +187,7 @@ def command(
         step("writing")
         if stages is not None:
             picture.save_stages(stages)
-        picture.save(out)
+        picture.save(out, bits)
     emptiness.say(picture, lambda: splatting.culled(scene, params))
     if report:
         from ibr_ref.cli.splatting_report import report_lines
@@ -289,7 +290,7 @@ def goes_with() -> dict[str, Beside]:
         for name in ("min_width", "footprint", "low_pass", "cutoff", "depth_tolerance")
     }
     return {
-        **always("out", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),
+        **always("out", "bits", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),
         **of_shape,
         "msr": Beside(one, {"simple_texture": ABSENT, "mesh": ABSENT}),
         "simple_texture": Beside(one, {"msr": ABSENT, "mesh": ABSENT}),
