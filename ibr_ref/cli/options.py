@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterable
 from enum import StrEnum
 from functools import wraps
+from pathlib import Path
 from typing import Annotated, NamedTuple, TypeVar
 
 import typer
@@ -40,7 +41,7 @@ class Vector(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """A size in world units, or a place on a plane."""
+    """A size in world units, a place on a plane, or a range."""
 
     x: float
     y: float
@@ -148,6 +149,8 @@ def whole(text: str) -> int:
     return int(text)
 
 
+Out = Annotated[Path, typer.Option(help="The picture: .png, .jpg, or .exr (floats; needs ibr_ref[io]).")]
+Bits = Annotated[int, typer.Option(parser=whole, help="Of each colour in a .png: 8 or 16.")]
 Near = Annotated[
     float | None, typer.Option(parser=number, help="Distance of the near plane. Without: before all that is there.")
 ]
@@ -173,6 +176,12 @@ def vector(text: str) -> Vector:
 def pair(text: str) -> Pair:
     """W,H in world units, or the place X,Y of an object."""
     return Pair(*_numbers(text, 2, "0.3,0.2"))
+
+
+@_reads
+def one_or_two(text: str) -> Pair:
+    """A, which stands for A,A, or A,B."""
+    return Pair(*_numbers(text if "," in text else f"{text},{text}", 2, "30 or 20,30"))
 
 
 @_reads

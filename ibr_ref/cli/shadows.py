@@ -88,7 +88,7 @@ class Up(StrEnum):
 
 def command(
     context: typer.Context,
-    out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
+    out: options.Out,
     caster: Annotated[
         Path | None, typer.Option(help="The mesh that moves: OBJ, PLY, STL, glTF, Bézier patches. Without: a horse.")
     ] = None,
@@ -151,6 +151,7 @@ def command(
             "--report", help="Print how far the shadow is from the rendered or traced one, and the maps' memory."
         ),
     ] = False,
+    bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
     """Shadows by image warping (Kang & Ihm 2002) of a mesh that moves over a floor with steps."""
@@ -158,7 +159,7 @@ def command(
         step("reading the mesh")
         from ibr_ref import io, models, shadows
 
-        io.check_image_writable(out)
+        io.check_image_writable(out, bits)
         for path in (stages, None if maps is None or _kept(maps) else maps):
             if path is not None:
                 io.check_writable(path)
@@ -200,7 +201,7 @@ def command(
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
-        frame.save(out)
+        frame.save(out, bits)
     for line in lines:
         typer.echo(line)
     emptiness.say(frame, lambda: shadows.culled(scene))
@@ -285,7 +286,9 @@ def goes_with() -> dict[str, Beside]:
         return Beside(f"others do not read {name}", {"method": READ_BY[name]})
 
     return {
-        **always("out", "caster", "offset", "method", "eye", "target", "near", "far", "size", "report", "stages"),
+        **always(
+            "out", "bits", "caster", "offset", "method", "eye", "target", "near", "far", "size", "report", "stages"
+        ),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),
         "light_size": Beside(

@@ -50,7 +50,7 @@ class Method(StrEnum):
 
 
 def command(
-    out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
+    out: options.Out,
     msr: Annotated[Path | None, typer.Option(help="A folder of MSR 3D Video (calibParams-*.txt, images).")] = None,
     rgbd: depth_set_options.Rgbd = None,
     format_: depth_set_options.OfFormat = depth_set_options.Format.auto,
@@ -158,6 +158,7 @@ def command(
     ] = False,
     depth_set: depth_set_options.DepthSet = None,
     point_cloud: depth_set_options.PointCloud = None,
+    bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
     """Splatting of reference images with depth (Lee & Park 2006) from a new view: of photographs, files, or a mesh."""
@@ -167,7 +168,7 @@ def command(
         from ibr_ref import io, splatting
         from ibr_ref.scene import Light
 
-        io.check_image_writable(out)
+        io.check_image_writable(out, bits)
         for path in (stages, point_cloud):
             if path is not None:
                 io.check_writable(path)
@@ -223,7 +224,7 @@ def command(
         step("writing")
         if stages is not None:
             picture.save_stages(stages)
-        picture.save(out)
+        picture.save(out, bits)
     emptiness.say(picture, lambda: splatting.culled(scene, params))
     if report:
         from ibr_ref.cli.splatting_report import report_lines
@@ -271,7 +272,7 @@ def goes_with() -> dict[str, Beside]:
         "max_time_difference",
     )
     return {
-        **always("out", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),
+        **always("out", "bits", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),
         **always("depth_set", "point_cloud"),
         **of_shape,
         **{name: Beside(one, {other: ABSENT for other in sources if other != name}) for name in sources},

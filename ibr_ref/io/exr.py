@@ -76,7 +76,7 @@ def _part(library: Any, data: bytes, header_only: bool) -> Any:
     try:
         with _silenced():
             parts = library.File(BytesIO(data), separate_channels=True, header_only=header_only).parts
-    except (RuntimeError, ValueError, TypeError):
+    except (RuntimeError, ValueError, TypeError):  # what it makes of damaged files
         parts = []
     if not parts:
         raise ValueError(f"found a truncated or damaged EXR image of {len(data)} bytes, allowed: a whole one")
@@ -103,7 +103,10 @@ def _names(part: Any) -> list[str]:
         raise ValueError(f"found {len(channels)} EXR channels, allowed: 1 to {_MOST_CHANNELS}")
     if any((channel.xSampling, channel.ySampling) != (1, 1) for channel in channels):
         raise ValueError("found an EXR image with subsampled channels, allowed: one sample a pixel")
-    return [channel.name for channel in channels]
+    try:
+        return [channel.name for channel in channels]
+    except UnicodeDecodeError:
+        raise ValueError("found an EXR channel whose name is no UTF-8, allowed: text") from None
 
 
 def _wanted(names: list[str], channel: str | None) -> list[str]:

@@ -25,9 +25,9 @@ class Frame:
     stages: dict[str, Any] = field(default_factory=dict)
     """Arrays by name, "stage.array" (of an atlas: a tuple of them, one a page); empty with stages=False."""
 
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write the picture, in 8 bits, in the format that the name's ending says."""
-        write_image(path, self.color)
+    def save(self, path: str | PathLike[str], bits: int = 8) -> None:
+        """Write the picture as `write_image` does: .png in 8 or 16 bits, .jpg, or .exr with the colours as they are."""
+        write_image(path, self.color, bits)
 
     def depth_image(self, camera: Camera) -> DepthImage:
         """The picture as a reference image of splatting: of the camera that it was drawn for, where anything is shown.

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from ibr_ref.io import exr, pfm, tiff
 from ibr_ref.io.files import contents, naming
-from ibr_ref.scene.checks import named
 
 
 def read_values(path: str | PathLike[str], channel: str | None = None) -> NDArray[Any]:
@@ -25,17 +24,20 @@ def read_values(path: str | PathLike[str], channel: str | None = None) -> NDArra
     """
     data = contents(path)
     with naming(path):
-        if is_exr(data):
-            return exr.decode(data, channel)
-        if channel is not None:
-            raise ValueError(
-                f"found a file that is no EXR image, {channel!r} is a channel of EXR images, allowed: none"
-            )
-        if is_pfm(data):
-            return pfm.decode(data)
-        if is_tiff(data):
-            return tiff.decode(data).samples
-    raise ValueError(f"{named(path)}: found a file that starts with {data[:8]!r}, allowed: an EXR, PFM or TIFF image")
+        return decoded(data, channel)
+
+
+def decoded(data: bytes, channel: str | None = None) -> NDArray[Any]:
+    """What `read_values` returns of a file's bytes. Raises ValueError without the path."""
+    if is_exr(data):
+        return exr.decode(data, channel)
+    if channel is not None:
+        raise ValueError(f"found a file that is no EXR image, {channel!r} is a channel of EXR images, allowed: none")
+    if is_pfm(data):
+        return pfm.decode(data)
+    if is_tiff(data):
+        return tiff.decode(data).samples
+    raise ValueError(f"found a file that starts with {data[:8]!r}, allowed: an EXR, PFM or TIFF image")
 
 
 def is_exr(data: bytes) -> bool:
