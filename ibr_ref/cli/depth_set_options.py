@@ -57,7 +57,7 @@ Rgbd = Annotated[
 ]
 OfFormat = Annotated[
     Format,
-    typer.Option("--format", help="--rgbd: its form (ibr_ref/io/depth_sets has a table); auto: told by its files."),
+    typer.Option("--format", help="--rgbd: its form (a table is in ibr_ref/io/README.md); auto: told by its files."),
 ]
 DepthScale = Annotated[
     float | None,
@@ -97,4 +97,8 @@ Pose = Annotated[
     ),
 ]
 DepthSet = Annotated[Path | None, typer.Option(help="Also write the references, as a folder that --rgbd reads.")]
+OneDepthImage = Annotated[
+    Path | None,
+    typer.Option(help="Also write the picture with its depths, as a folder that `render splatting --rgbd` reads."),
+]
 PointCloud = Annotated[Path | None, typer.Option(help="Also write the points of the references, as a PLY file.")]

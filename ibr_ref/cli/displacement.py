@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import base_polygon, emptiness, options
+from ibr_ref.cli import base_polygon, depth_set_options, emptiness, options
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 from ibr_ref.progress import progress
 from ibr_ref.searches import SEARCHES
@@ -171,6 +171,7 @@ def command(
     distance_layers: Annotated[
         int, typer.Option(parser=options.whole, help="donnelly: layers of the distance texture.")
     ] = 32,
+    depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
@@ -233,6 +234,8 @@ def command(
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
+        if depth_set is not None:
+            io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
         frame.save(out, bits)
     emptiness.say(frame, lambda: displacement.culled(scene, params))
 
@@ -248,7 +251,18 @@ def goes_with() -> dict[str, Beside]:
     return {
         **{name: read(name) for name in signature(command).parameters if name in READ_BY},
         **always(
-            "out", "bits", "height", "color", "invert_height", "height_scale", "eye", "target", "fov", "near", "far"
+            "out",
+            "bits",
+            "depth_set",
+            "height",
+            "color",
+            "invert_height",
+            "height_scale",
+            "eye",
+            "target",
+            "fov",
+            "near",
+            "far",
         ),
         **always("no_exif", "light", "size", "shadow_steps", "method", "stages"),
         **{

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import emptiness, options
+from ibr_ref.cli import depth_set_options, emptiness, options
 from ibr_ref.cli.command import given
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
 from ibr_ref.progress import progress
@@ -151,6 +151,7 @@ def command(
             "--report", help="Print how far the shadow is from the rendered or traced one, and the maps' memory."
         ),
     ] = False,
+    depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
 ) -> None:
@@ -201,6 +202,8 @@ def command(
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
+        if depth_set is not None:
+            io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
         frame.save(out, bits)
     for line in lines:
         typer.echo(line)
@@ -287,7 +290,19 @@ def goes_with() -> dict[str, Beside]:
 
     return {
         **always(
-            "out", "bits", "caster", "offset", "method", "eye", "target", "near", "far", "size", "report", "stages"
+            "out",
+            "bits",
+            "depth_set",
+            "caster",
+            "offset",
+            "method",
+            "eye",
+            "target",
+            "near",
+            "far",
+            "size",
+            "report",
+            "stages",
         ),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),

@@ -198,7 +198,7 @@ def command(
         if camera is None:
             camera = splatting_sources.view_of(images, eye, target, up, fov, size, near, far)
         if depth_set is not None:
-            io.write_depth_set(depth_set, images)
+            io.write_depth_set(depth_set, images, bits=bits)
         if point_cloud is not None:
             io.write_point_cloud(point_cloud, images)
         scene = splatting.Scene(

@@ -194,3 +194,22 @@ def test_numbers() -> None:
     assert str(options.cameras("all")) == "all"
     assert options.cameras("0,2") == (0, 2)
     assert len(options.pose(",".join("1" * 16))) == 16
+
+
+def test_every_renderers_picture_is_handed_on(run: Run, cube: Path, tmp_path: Path) -> None:
+    """Seen from where it was drawn, width 1, it is the same picture."""
+    height = tmp_path / "height.png"
+    io.write_image(height, np.add.outer(np.arange(8.0), np.arange(8.0)) / 14)
+    calls = (
+        ("displacement", "--height", height, "--color", height, "--size", "40x30"),
+        ("shadows", "--caster", cube, "--method", "traced", "--size", "40x30"),
+    )
+    for name, *call in calls:
+        out, folder, again = (tmp_path / f"{name}{ending}" for ending in (".png", "", "-again.png"))
+        assert run("render", name, *call, "--out", out, "--depth-set", folder)[0] == 0
+        (image,) = io.read_depth_set(folder)
+        assert image.mask.mean() > 0.1
+        call = ["--rgbd", folder, "--view", "0", "--law", "1,0,0,1", "--out", again]
+        assert run("render", "splatting", *call) == (0, "", "")
+        pictures = [imageio.imread(path) for path in (out, again)]
+        assert np.array_equal(pictures[0][image.mask], pictures[1][image.mask])

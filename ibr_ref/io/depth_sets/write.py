@@ -21,12 +21,12 @@ _LAST = 65535
 
 
 def write_depth_set(
-    folder: str | PathLike[str], images: Sequence[DepthImage], *, depth_scale: float | None = None
+    folder: str | PathLike[str], images: Sequence[DepthImage], *, depth_scale: float | None = None, bits: int = 8
 ) -> None:
     """Write reference images as a folder that `read_depth_set` reads: transforms.json, images/NNN.png, depth/NNN.npy.
 
-    Colours are kept in 8 bits; masks and depths to the last bit, as float64, 0 off the mask; near, far and intrinsics too,
-    poses to rounding. depth_scale: depths as 16-bit PNG instead, depth/NNN.png, in whole numbers of so many world units
+    Colours are kept in 8 bits, or 16; masks and depths to the last bit, as float64, 0 off the mask; near, far and
+    intrinsics too, poses to rounding. depth_scale: depths as 16-bit PNG instead, depth/NNN.png, in whole numbers of so many world units
     (integer_depth_scale of instant-ngp), to half a unit. A skew of intrinsics is written under that name, which other
     programs do not look for.
 
@@ -41,6 +41,7 @@ def write_depth_set(
             f"{checks.named(folder)}: images: found something else or none, allowed: a sequence of DepthImages"
         )
     scale = None if depth_scale is None else checks.number("depth_scale", depth_scale, above=0.0, high=1e9)
+    checks.whole("bits", bits, low=8, high=16)
     ending = "npy" if scale is None else "png"
     frames = []
     for i, image in enumerate(images):
@@ -53,7 +54,7 @@ def write_depth_set(
     check_writable(folder / NAME)
     for image, frame in zip(images, frames, strict=True):
         color, depth, _ = image.arrays
-        write_image(folder / frame["file_path"], color)
+        write_image(folder / frame["file_path"], color, bits)
         if scale is not None:
             write_image(folder / frame["depth_file_path"], _codes(image, scale) / _LAST, bits=16)
             continue
