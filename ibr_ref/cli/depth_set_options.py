@@ -57,7 +57,7 @@ Rgbd = Annotated[
 ]
 OfFormat = Annotated[
     Format,
-    typer.Option("--format", help="--rgbd: its form (a table is in ibr_ref/io/README.md); auto: told by its files."),
+    typer.Option("--format", help="--rgbd: its form (README.md in ibr_ref/io has a table); auto: told by its files."),
 ]
 DepthScale = Annotated[
     float | None,
@@ -84,7 +84,7 @@ Intrinsics = Annotated[
         parser=options.intrinsics, metavar="FX,FY,CX,CY", help="--rgbd: pixels, of pictures whose files have none."
     ),
 ]
-MaxTimeDifference = Annotated[
+MaxTimeGap = Annotated[
     float | None,
     typer.Option(parser=options.number, help="--rgbd: seconds, of what belongs together. Without: 0.02."),
 ]

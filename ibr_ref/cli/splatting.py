@@ -60,7 +60,7 @@ def command(
     along: depth_set_options.OfAlong = None,
     pixel_centers: depth_set_options.OfPixelCenters = None,
     intrinsics: depth_set_options.Intrinsics = None,
-    max_time_difference: depth_set_options.MaxTimeDifference = None,
+    max_time_gap: depth_set_options.MaxTimeGap = None,
     cameras: Annotated[
         options.Cameras,
         typer.Option(
@@ -191,7 +191,7 @@ def command(
                 along=along,
                 pixel_centers=pixel_centers,
                 intrinsics=intrinsics,
-                max_time_difference=max_time_difference,
+                max_time_gap=max_time_gap,
             )
         else:
             images = splatting_sources.of_file(simple_texture, mesh, count, reference_size)
@@ -269,7 +269,7 @@ def goes_with() -> dict[str, Beside]:
         "along",
         "pixel_centers",
         "intrinsics",
-        "max_time_difference",
+        "max_time_gap",
     )
     return {
         **always("out", "bits", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),

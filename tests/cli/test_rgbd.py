@@ -127,7 +127,7 @@ def test_nothing_in_view_says_why(run: Run, scene: Path) -> None:
         (("--view", "0", "--cameras", "0,7"), ("views[1]: found 7",)),
         (("--view", "0", "--format", "tum"), ("scene",)),
         (("--view", "0", "--format", "kitti"), ("kitti", "auto", "colmap")),
-        (("--view", "0", "--max-time-difference", "1"), ("max_time_difference: found 1.0", "open3d")),
+        (("--view", "0", "--max-time-gap", "1"), ("max_time_gap: found 1.0", "open3d")),
         (("--view", "0", "--depth-scale", "0"), ("depth_scale: found 0.0", "> 0")),
         (("--view", "0", "--convention", "opencl"), ("opencl", "opencv", "opengl")),
         (("--view", "0", "--intrinsics", "1,2,3"), ("--intrinsics", "4 numbers")),
@@ -185,7 +185,7 @@ def test_the_words_are_the_readers() -> None:
         "pixel_centers": depth_set_options.PixelCenters,
     }
     assert {name: tuple(value.value for value in of) for name, of in enumerations.items()} == CHOICES
-    assert READ_BY["max_time_difference"] == ("tum",)
+    assert READ_BY["max_time_gap"] == ("tum",)
     assert "middlebury" not in READ_BY["depth_scale"]
 
 

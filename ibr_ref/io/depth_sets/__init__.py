@@ -1,6 +1,6 @@
 """Depth sets: folders of pictures with depth, intrinsics and poses, in the forms that people have them in.
 
-Each module has one format, and says where it is from and what it leaves open; `ibr_ref/io/README.md` has the table.
+Each module has one format, and says where it is from and what it leaves open; README.md in ibr_ref/io has the table.
 """
 
 from ibr_ref.io.depth_sets.formats import FORMATS, READ_BY

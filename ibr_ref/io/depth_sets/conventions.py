@@ -29,7 +29,7 @@ class Options(NamedTuple):
     pixel_centers: str | None = None
     depth_scale: float | None = None
     intrinsics: Sequence[float] | None = None
-    max_time_difference: float | None = None
+    max_time_gap: float | None = None
 
 
 class Conventions(NamedTuple):
@@ -66,13 +66,11 @@ def checked(options: Options) -> Options:
     for name, allowed in CHOICES.items():
         if getattr(options, name) is not None:
             checks.choice(name, getattr(options, name), allowed)
-    scale, intrinsics, difference = options.depth_scale, options.intrinsics, options.max_time_difference
+    scale, intrinsics, difference = options.depth_scale, options.intrinsics, options.max_time_gap
     return options._replace(
         depth_scale=None if scale is None else checks.number("depth_scale", scale, above=0.0, high=1e9),
         intrinsics=None if intrinsics is None else checks.vector("intrinsics", intrinsics, 4).tolist(),
-        max_time_difference=None
-        if difference is None
-        else checks.number("max_time_difference", difference, low=0.0, high=1e9),
+        max_time_gap=None if difference is None else checks.number("max_time_gap", difference, low=0.0, high=1e9),
     )
 
 

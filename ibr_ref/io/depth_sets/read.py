@@ -30,11 +30,11 @@ def read_depth_set(
     pixel_centers: str | None = None,
     depth_scale: float | None = None,
     intrinsics: Sequence[float] | None = None,
-    max_time_difference: float | None = None,
+    max_time_gap: float | None = None,
 ) -> DepthSet:
     """Read pictures with depth, in the world of their own poses.
 
-    format: "open3d" | "tum" | "scannet" | "transforms" | "colmap" | "middlebury" | "folder" (`ibr_ref/io/README.md` has
+    format: "open3d" | "tum" | "scannet" | "transforms" | "colmap" | "middlebury" | "folder" (README.md in ibr_ref/io has
     the table); None: told by the files. views: which pictures, from 0 in the set's order; None: all with a depth map.
 
     The others are for what a format leaves open, and for sets that are not as their format says; None: as it says.
@@ -43,7 +43,7 @@ def read_depth_set(
     along: depths along the "axis" of view | along the "ray" from the eye.
     pixel_centers: where the intrinsics have the centres of pixels, at "integer" places | at "half" ones.
     depth_scale: world units of one stored unit, > 0: 0.001 for millimetres in a world of metres.
-    intrinsics: (f_x, f_y, c_x, c_y) of the pictures, pixels. max_time_difference: seconds, of what belongs together.
+    intrinsics: (f_x, f_y, c_x, c_y) of the pictures, pixels. max_time_gap: seconds, of what belongs together.
 
     Depths of 0, below 0, of 1e9 and more, infinite and NaN are nothing: off the mask. An image has the size of its depth
     map; colours of another size, in the same shape, are fetched bilinearly at the centres of its pixels. near and far of
@@ -53,7 +53,7 @@ def read_depth_set(
     a rigid pose or a pinhole (pictures with lens distortion are refused), left open, has no valid depth at all, or is
     more than 2^26 pixels: choose `views` then.
     """
-    options = Options(convention, poses, along, pixel_centers, depth_scale, intrinsics, max_time_difference)
+    options = Options(convention, poses, along, pixel_centers, depth_scale, intrinsics, max_time_gap)
     set_ = _opened(path, format, options)
     names, images, stored, pixels = list[str](), list[DepthImage](), "", 0
     for view in set_.chosen(views):

@@ -45,7 +45,7 @@ def _holds(folder: Path) -> bool:
 
 
 def _views(folder: Path, options: Options) -> list[View]:
-    apart = _APART if options.max_time_difference is None else options.max_time_difference
+    apart = _APART if options.max_time_gap is None else options.max_time_gap
     intrinsics = _intrinsics(folder, options)
     color, depth, poses = (_stamped(folder / f"{name}.txt") for name in ("rgb", "depth", "groundtruth"))
     with naming(folder):
@@ -65,7 +65,7 @@ def _views(folder: Path, options: Options) -> list[View]:
     if not result:
         found = f"{len(color.times)} pictures, {len(depth.times)} depth maps and {len(poses.times)} poses"
         raise ValueError(
-            f"{checks.named(folder)}: found {found}, allowed: at least one of each, within max_time_difference = {apart:g}"
+            f"{checks.named(folder)}: found {found}, allowed: at least one of each, within max_time_gap = {apart:g}"
         )
     return result
 
@@ -120,7 +120,7 @@ def _associated(first: _Stamped, second: _Stamped, apart: float) -> list[tuple[i
     count = np.searchsorted(times, first.times + apart, "right") - low
     total = int(count.sum())
     if total > _MOST_PAIRS:
-        raise checks.reject("max_time_difference", apart, f"a time within which at most {_MOST_PAIRS} pairs lie")
+        raise checks.reject("max_time_gap", apart, f"a time within which at most {_MOST_PAIRS} pairs lie")
     i = np.repeat(np.arange(len(first.times)), count)
     j = order[np.arange(total) - np.repeat(np.cumsum(count) - count, count) + np.repeat(low, count)]
     nearest = np.lexsort((j, i, np.abs(first.times[i] - second.times[j])))
@@ -139,5 +139,5 @@ FORMAT = Format(
     _holds,
     _views,
     Conventions("opencv", "camera_to_world", "axis", "integer", depth_scale=1.0 / 5000.0),
-    (*ANY, "intrinsics", "max_time_difference"),
+    (*ANY, "intrinsics", "max_time_gap"),
 )

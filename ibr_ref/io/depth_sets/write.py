@@ -26,9 +26,9 @@ def write_depth_set(
     """Write reference images as a folder that `read_depth_set` reads: transforms.json, images/NNN.png, depth/NNN.npy.
 
     Colours are kept in 8 bits, or 16; masks and depths to the last bit, as float64, 0 off the mask; near, far and
-    intrinsics too, poses to rounding. depth_scale: depths as 16-bit PNG instead, depth/NNN.png, in whole numbers of so many world units
-    (integer_depth_scale of instant-ngp), to half a unit. A skew of intrinsics is written under that name, which other
-    programs do not look for.
+    intrinsics too, poses to rounding. A skew is written under that name, which other programs do not look for.
+    depth_scale: depths as 16-bit PNG instead, depth/NNN.png, in whole numbers of so many world units
+    (integer_depth_scale of instant-ngp), to half a unit.
 
     What is there under these names is replaced, transforms.json last. Raises ValueError, with the folder and the image, for
     orthographic cameras, which the file has no words for, and depths that are not 1 to 65535 units; OSError where

@@ -273,7 +273,7 @@ def test_tum(tmp_path):
     colors.write_text("".join(f"1305031102.0{i % 10} rgb/a.png\n" for i in range(5000)))
     poses.write_text("".join(f"1305031102.0{i % 10} 0 0 0 0 0 0 1\n" for i in range(5000)))
     (tmp_path / "depth.txt").write_text("".join(f"1305031102.0{i % 10} depth/a.png\n" for i in range(5000)))
-    refused(tmp_path, "max_time_difference: found 0.02", "at most 4194304 pairs", **k)
+    refused(tmp_path, "max_time_gap: found 0.02", "at most 4194304 pairs", **k)
     colors.write_text(good_colors)
 
 

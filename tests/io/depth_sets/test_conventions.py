@@ -101,7 +101,7 @@ def test_whole_numbers_without_a_scale(tmp_path):
         ({"depth_scale": float("nan")}, "depth_scale: found nan"),
         ({"intrinsics": (1, 2, 3)}, "intrinsics: found (1, 2, 3), allowed: 4 finite numbers"),
         ({"intrinsics": (0, 2, 3, 4)}, "focal lengths other than 0"),
-        ({"max_time_difference": 1}, "max_time_difference: found 1.0, allowed: None with the format folder"),
+        ({"max_time_gap": 1}, "max_time_gap: found 1.0, allowed: None with the format folder"),
         ({"format": "tumm"}, "format: found 'tumm', allowed: open3d | tum | scannet"),
     ],
 )

@@ -97,9 +97,9 @@ def test_tum_leaves_out_what_is_too_far_in_time(tmp_path):
     seen = shots.shots(2)
     writers.tum(tmp_path, seen, late=0.03)
     k = writers.tum_intrinsics(shots.K)
-    with pytest.raises(ValueError, match=r"max_time_difference = 0\.02"):
+    with pytest.raises(ValueError, match=r"max_time_gap = 0\.02"):
         io.read_depth_set(tmp_path, intrinsics=k)
-    check(io.read_depth_set(tmp_path, intrinsics=k, max_time_difference=0.04), seen, 1 / 5000)
+    check(io.read_depth_set(tmp_path, intrinsics=k, max_time_gap=0.04), seen, 1 / 5000)
 
 
 def test_scannet(tmp_path):
