@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple
 
@@ -100,7 +101,7 @@ def _cameras_txt(path: Path) -> dict[int, ColmapCamera]:
 def _images_txt(path: Path) -> list[ColmapImage]:
     """`IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME` and then a line, perhaps empty, of features."""
     result = []
-    rest = iter(enumerate(text(path, _MOST_TEXT).splitlines(), 1))
+    rest = iter(enumerate(BytesIO(text(path, _MOST_TEXT)), 1))
     for number, line in rest:
         words = line.split(None, 9)
         if not words or words[0].startswith(b"#"):

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ibr_ref.io.depth_sets.conventions import Conventions, Options, checked, settled
+from ibr_ref.io.depth_sets.conventions import Conventions, Format, Options, checked, settled
 from ibr_ref.io.depth_sets.formats import format_of
 from ibr_ref.io.depth_sets.view import FARTHEST, View, depth_image, view_camera
 from ibr_ref.scene import Camera, DepthImage, DepthSet, checks
@@ -98,6 +98,7 @@ class _Set(NamedTuple):
     """A data set, of which only the texts have been read."""
 
     path: Path
+    format: Format
     views: list[View]
     conventions: Conventions
     options: Options
@@ -106,9 +107,8 @@ class _Set(NamedTuple):
         if views is None:
             chosen = [view for view in self.views if view.depth is not None or not with_depth]
             if not chosen:
-                raise ValueError(
-                    f"{checks.named(self.path)}: found {len(self.views)} pictures and no depth map, allowed: at least one"
-                )
+                found, allowed = f"{len(self.views)} pictures and no depth map", f"at least one ({self.format.wants})"
+                raise ValueError(f"{checks.named(self.path)}: found {found}, allowed: {allowed}")
             return iter(chosen)
         if not isinstance(views, Sequence) or not views:
             raise checks.reject("views", views, "a sequence of numbers of pictures, at least one, or None for all")
@@ -126,4 +126,4 @@ def _opened(path: str | PathLike[str], name: str | None, options: Options) -> _S
         if error.strerror:  # of a folder: the system's own message does not start with its name
             raise type(error)(f"{checks.named(error.filename or path)}: cannot be read ({error.strerror})") from None
         raise
-    return _Set(Path(path), views, conventions, options)
+    return _Set(Path(path), format_, views, conventions, options)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,8 @@ from ibr_ref.scene.rotations import normalized, rotation_of
 
 Array = NDArray[np.float64]
 
-MOST_BYTES = 2**26
-"""Of a text: half a million poses."""
+MOST_BYTES = 2**25
+"""Of a text: two hundred thousand poses."""
 _UNIT = 1e-2
 """How far the length of a quaternion, as it is printed, may be off 1."""
 
@@ -32,7 +33,7 @@ def text(path: Path, most: int = MOST_BYTES) -> bytes:
 
 def lines(path: Path, most: int = MOST_BYTES) -> Iterator[tuple[int, list[bytes]]]:
     """Number and words of the lines that have any; `#` begins a comment line."""
-    for number, line in enumerate(text(path, most).splitlines(), 1):
+    for number, line in enumerate(BytesIO(text(path, most)), 1):
         words = line.split()
         if words and not words[0].startswith(b"#"):
             yield number, words

@@ -220,6 +220,17 @@ def test_what_is_no_file(own):
     refused(own, "1.npy: is a folder", **OWN)
 
 
+@pytest.mark.parametrize("name", ["transforms.json", "calib.txt", "sparse/cameras.bin", "rgb.txt"])
+def test_texts_that_are_no_files(tmp_path, name):
+    writers.tum(tmp_path, shots.shots(1))
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).unlink(missing_ok=True)
+    os.mkfifo(tmp_path / name)
+    format_ = {"t": "transforms", "c": "middlebury", "s": "colmap", "r": "tum"}[name[0]]
+    k = {"intrinsics": (1, 1, 1, 1)} if format_ == "tum" else {}
+    refused(tmp_path, f"{name}: is a device or a pipe", format=format_, **k)
+
+
 def test_a_link_out_of_the_folder(tmp_path):
     folder, outside = tmp_path / "set", tmp_path / "outside.png"
     folder.mkdir()
