@@ -27,6 +27,8 @@ Examples:
 
     ibr-ref render shadows --caster cow.obj --samples 9 --offset 0.3,-0.2 --out cow.png
 
+    ibr-ref render shadows --light 2,1,4 --light-size 0.3,0.1 --samples 9 --out horse.png
+
     ibr-ref render shadows --caster cow.obj --method pcss --light-size 0.3 --report --out cow.png
 
     ibr-ref render shadows --caster cow.obj --controls best --maps cow.npz --samples 9 --report --out cow.png
@@ -100,13 +102,25 @@ def command(
     samples: Annotated[
         int, typer.Option(parser=options.whole, help="Samples of the light: 1 (a hard shadow), 5 or 9.")
     ] = 1,
-    light_size: Annotated[
-        float,
+    light: Annotated[
+        options.Vector | None,
         typer.Option(
-            parser=options.number,
-            help="Half the side of the light, for more than one sample; the mesh's largest extent is 1.",
+            parser=options.vector, metavar="X,Y,Z", help="Where the light is; its maps fit. Without: -1,-1.2,5."
         ),
-    ] = 0.12,
+    ] = None,
+    light_target: Annotated[
+        options.Vector | None,
+        typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point that the light looks at. Without: 0,0,0."),
+    ] = None,
+    light_size: Annotated[
+        options.Pair,
+        typer.Option(
+            parser=options.one_or_two,
+            metavar="A[,B]",
+            help="Half the side of the light, or half of both, along x and y, for more than one sample; the mesh's largest "
+            "extent is 1.",
+        ),
+    ] = options.Pair(0.12, 0.12),
     method: Annotated[
         Method,
         typer.Option(
@@ -168,6 +182,8 @@ def command(
             read_caster(caster, up),
             offset=offset,
             light_size=light_size,
+            light_position=light,
+            light_target=light_target,
             eye=eye,
             target=target,
             width=size.width,
@@ -289,21 +305,8 @@ def goes_with() -> dict[str, Beside]:
         return Beside(f"others do not read {name}", {"method": READ_BY[name]})
 
     return {
-        **always(
-            "out",
-            "bits",
-            "depth_set",
-            "caster",
-            "offset",
-            "method",
-            "eye",
-            "target",
-            "near",
-            "far",
-            "size",
-            "report",
-            "stages",
-        ),
+        **always("out", "bits", "caster", "offset", "light", "light_target", "method", "eye", "target", "near", "far"),
+        **always("size", "report", "stages", "depth_set"),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),
         "light_size": Beside(
