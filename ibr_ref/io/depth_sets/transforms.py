@@ -3,8 +3,9 @@
 A document of `frames`, each with file_path, depth_file_path (nerfstudio) or depth_path (instant-ngp) and transform_matrix,
 4 x 4, camera to world, OpenGL's axes; and, in the frame or for all of them, fl_x, fl_y, cx, cy, w, h, or camera_angle_x and
 camera_angle_y, radians. Pixels' centres are half-integers. integer_depth_scale (instant-ngp) is the world units of a stored
-one; without it whole numbers need depth_scale (nerfstudio's own default is 0.001). applied_scale, by which nerfstudio has
-scaled the poses, scales the depths. skew, near and far are what `write_depth_set` adds.
+whole number, depth_unit_scale_factor of any; without either, whole numbers need depth_scale (0.001 is nerfstudio's own
+default, for floats too). applied_scale, by which nerfstudio has scaled the poses, scales the depths. skew, near and far are
+what `write_depth_set` adds.
 """
 
 from __future__ import annotations
@@ -29,19 +30,11 @@ NAME = "transforms.json"
 _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "OPENCV_FISHEYE", "SIMPLE_RADIAL", "RADIAL", "FULL_OPENCV")
 """Of a camera: pinholes, if all that bends is 0."""
 _BENDS = ("k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2")
-_OF_A_CAMERA = (
-    "fl_x",
-    "fl_y",
-    "cx",
-    "cy",
-    "w",
-    "h",
-    "camera_angle_x",
-    "camera_angle_y",
-    "camera_model",
-    "skew",
-    *_BENDS,
-)
+_OTHER_LENSES = ("is_fisheye", "ftheta_p0", "latlong", "equirectangular", "orthographic")
+"""Of instant-ngp: no pinholes."""
+_NUMBERS = ("fl_x", "fl_y", "cx", "cy", "w", "h", "camera_angle_x", "camera_angle_y", "skew")
+_OF_A_CAMERA = (*_NUMBERS, "camera_model", *_BENDS, *_OTHER_LENSES)
+_FACTORS = ("integer_depth_scale", "depth_unit_scale_factor", "applied_scale")
 _MOST = 1e9
 
 
@@ -56,9 +49,9 @@ def _views(folder: Path, options: Options) -> list[View]:
         frames = tree.get("frames")
         if not isinstance(frames, list) or not frames:
             raise checks.reject("frames", frames, "a list of at least one")
-        given = tree.get("integer_depth_scale")
-        scale = None if given is None else number(tree, "integer_depth_scale", low=1e-12, high=_MOST)
-        unit = number(tree, "applied_scale", low=1e-12, high=_MOST) if "applied_scale" in tree else 1.0
+        whole, every, applied = (_factor(tree, name) for name in _FACTORS)
+        if whole is not None and every is not None:
+            raise checks.reject("depth_unit_scale_factor", every, "None beside integer_depth_scale")
         shared = {name: tree[name] for name in _OF_A_CAMERA if name in tree}
     result = []
     for i, frame in enumerate(frames):
@@ -66,7 +59,9 @@ def _views(folder: Path, options: Options) -> list[View]:
         with naming(where):
             if not isinstance(frame, dict):
                 raise ValueError(f"found a {type(frame).__name__}, allowed: an object")
-            result.append(_view(folder, where, {**shared, **frame})._replace(depth_scale=scale, unit=unit))
+            view = _view(folder, where, {**shared, **frame})
+            scale = whole if every is None else every
+            result.append(view._replace(depth_scale=scale, scales_floats=every is not None, unit=applied or 1.0))
     return result
 
 
@@ -88,6 +83,10 @@ def _view(folder: Path, where: str, frame: dict[str, Any]) -> View:
     return View(str(color.relative_to(folder)), where, color, depth, k, matrix, size=size, planes=planes)
 
 
+def _factor(tree: dict[str, Any], name: str) -> float | None:
+    return number(tree, name, low=1e-12, high=_MOST) if name in tree else None
+
+
 def _file(folder: Path, field: str, name: object) -> Path:
     if not isinstance(name, str) or not name:
         raise checks.reject(field, name, "the name of a file")
@@ -101,8 +100,10 @@ def _intrinsics(frame: dict[str, Any]) -> tuple[NDArray[np.float64], tuple[int, 
         if frame.get(name) is not None and checks.number(name, frame[name]) != 0.0:
             allowed = "0: pictures without distortion (nerfstudio's ns-process-data and COLMAP undistort)"
             raise checks.reject(name, frame[name], allowed)
-    if frame.get("camera_model") == "OPENCV_FISHEYE":
-        raise checks.reject("camera_model", "OPENCV_FISHEYE", "a pinhole: pictures without distortion")
+    lens = next((name for name in _OTHER_LENSES if frame.get(name)), None)
+    if lens is not None or frame.get("camera_model") == "OPENCV_FISHEYE":
+        name = lens or "camera_model"
+        raise checks.reject(name, frame[name], "a pinhole: pictures without distortion")
     size = _size(frame)
     f_x = _focal(frame, "fl_x", "camera_angle_x", None if size is None else size[0])
     f_y = _focal(frame, "fl_y", "camera_angle_y", None if size is None else size[1], f_x)

@@ -47,6 +47,8 @@ class View(NamedTuple):
     """(b, d0): a stored d means the depth b/(d + d0)."""
     depth_scale: float | None = None
     """Of whole numbers, if the set says so."""
+    scales_floats: bool = False
+    """Whether it is of floats too."""
     unit: float = 1.0
     """World units of one unit of the scaled depths."""
     planes: tuple[float, float] | None = None
@@ -127,7 +129,7 @@ def _scaled(stored: Array, whole: bool, view: View, conventions: Conventions, op
         shifted = stored + offset
         return np.divide(baseline, shifted, out=np.zeros_like(shifted), where=np.isfinite(shifted) & (shifted > 0.0))
     scale = options.depth_scale
-    if scale is None and whole:
+    if scale is None and (whole or view.scales_floats):
         scale = conventions.depth_scale if view.depth_scale is None else view.depth_scale
         if scale is None:
             allowed = "a number > 0, the world units of one stored unit (0.001: millimetres in a world of metres)"

@@ -28,7 +28,7 @@ def write_depth_set(
     Colours are kept in 8 bits, or 16; masks and depths to the last bit, as float64, 0 off the mask; near, far and
     intrinsics too, poses to rounding. A skew is written under that name, which other programs do not look for.
     depth_scale: depths as 16-bit PNG instead, depth/NNN.png, in whole numbers of so many world units
-    (integer_depth_scale of instant-ngp), to half a unit.
+    (integer_depth_scale of instant-ngp), to half a unit. nerfstudio needs --depth-unit-scale-factor 1, or that number.
 
     What is there under these names is replaced, transforms.json last. Raises ValueError, with the folder and the image, for
     orthographic cameras, which the file has no words for, and depths that are not 1 to 65535 units; OSError where

@@ -57,6 +57,8 @@ def matrix(row, column, value):
         (frame(k1=0.01), ("frames[1]", "k1: found 0.01", "0: pictures without distortion")),
         (frame(p2=-0.01), ("p2: found -0.01",)),
         (frame(camera_model="OPENCV_FISHEYE"), ("camera_model", "OPENCV_FISHEYE", "a pinhole")),
+        (frame(is_fisheye=True), ("is_fisheye: found True", "a pinhole")),
+        (lambda tree: tree.update(ftheta_p0=0.1), ("frames[0]: ftheta_p0: found 0.1", "a pinhole")),
         (frame(camera_model="EQUIRECTANGULAR"), ("camera_model", "PINHOLE")),
         (frame(fl_x=0), ("fl_x: found 0",)),
         (frame(fl_x=1e300), ("fl_x: found 1e+300",)),

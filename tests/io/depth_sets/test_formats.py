@@ -145,6 +145,17 @@ def test_transforms_of_nerfstudio(tmp_path):
     check(io.read_depth_set(tmp_path, depth_scale=0.001), seen, 0.001)
 
 
+def test_transforms_with_a_unit(tmp_path):
+    """As files of some nerfstudio parsers say it, of all depths."""
+    seen = shots.shots()
+    writers.transforms(tmp_path, seen, ngp=False)
+    tree = json.loads((tmp_path / "transforms.json").read_text())
+    (tmp_path / "transforms.json").write_text(
+        json.dumps(tree | {"depth_unit_scale_factor": 0.001, "is_fisheye": False})
+    )
+    check(io.read_depth_set(tmp_path), seen, 0.001)
+
+
 def test_transforms_with_angles(tmp_path):
     seen = [shots.shot(np.eye(3), np.zeros(3), np.array([[22.0, 0, 10], [0, 23.0, 7], [0, 0, 1]]))]
     writers.transforms(tmp_path, seen)
@@ -271,3 +282,20 @@ def test_some_views(tmp_path):
     for views in ((3,), (-1,), (), "01", 1, (0.5,)):
         with pytest.raises(ValueError, match="views"):
             io.read_depth_set(tmp_path, views=views)
+
+
+def test_transforms_whose_floats_have_a_unit(tmp_path):
+    """The caller's word comes before the file's."""
+    seen = shots.shots(1)
+    io.write_depth_set(tmp_path, io.read_depth_set(writers.transforms(tmp_path, seen)))
+    path = tmp_path / "transforms.json"
+    tree = json.loads(path.read_text())
+    path.write_text(json.dumps(tree | {"depth_unit_scale_factor": 2}))
+    depth, expected = (io.read_depth_set(tmp_path, depth_scale=scale)[0].depth for scale in (None, 1))
+    assert np.array_equal(depth, 2 * expected)
+    assert np.allclose(expected, seen[0].depth, rtol=0, atol=0.001)
+    path.write_text(json.dumps(tree | {"depth_unit_scale_factor": 2, "integer_depth_scale": 2}))
+    with pytest.raises(
+        ValueError, match=r"depth_unit_scale_factor: found 2\.0, allowed: None beside integer_depth_scale"
+    ):
+        io.read_depth_set(tmp_path)
