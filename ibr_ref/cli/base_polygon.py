@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +25,6 @@ def polygon(
     color: Path | None,
     facade: Path | None,
     *,
-    invert_height: bool,
     proportions: tuple[float, float, float],
     facade_tile: tuple[float, float],
     exif: bool,
@@ -36,14 +36,13 @@ def polygon(
     from ibr_ref import io
     from ibr_ref.scene import BasePolygon
 
-    values = 1.0 - heights.values if invert_height else heights.values
-    colors = greys(values) if color is None else io.read_color(color, exif)
+    colors = greys(heights.values) if color is None else io.read_color(color, exif)
     across, along, relief = proportions
     return BasePolygon(
         corner=(-across / 2, -along / 2, 0.0),
         edge_u=(across, 0.0, 0.0),
         edge_v=(0.0, along, 0.0),
-        height_map=values[::-1],
+        height_map=heights.values[::-1],
         color_map=colors[::-1],
         normal_map=None if normals is None else normals[::-1],
         facade_map=None if facade is None else io.read_color(facade, exif),
@@ -64,16 +63,24 @@ def greys(heights: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def read_maps(
-    height: Path | None, normal_height: Path | None, normal: Path | None, exif: bool, **options: Any
+    height: Path | None,
+    normal_height: Path | None,
+    normal: Path | None,
+    *,
+    invert_height: bool,
+    exif: bool,
+    **options: Any,
 ) -> tuple[HeightMap, NDArray[np.float64] | None]:
-    """Heights, and normals where there are any. options: of `io.read_height_map`."""
+    """Heights, white or black the highest, and normals where there are any. options: of `io.read_height_map`."""
     from ibr_ref import io
 
     if (height is None) == (normal_height is None) or (normal_height is not None and normal is not None):
         raise typer.BadParameter("give either --height (and perhaps --normal) or --normal-height")
     if height is not None:
         normals = None if normal is None else io.read_normal(normal, exif)
-        return io.read_height_map(height, exif, **options), normals
-    assert normal_height is not None
-    normals, values = io.read_normal_height(normal_height, exif)
-    return io.HeightMap(values=values, low=0.0, high=1.0), normals
+        heights = io.read_height_map(height, exif, **options)
+    else:
+        assert normal_height is not None
+        normals, values = io.read_normal_height(normal_height, exif)
+        heights = io.HeightMap(values=values, low=0.0, high=1.0)
+    return replace(heights, values=1.0 - heights.values) if invert_height else heights, normals

@@ -130,18 +130,19 @@ def _range(found: ArrayLike) -> tuple[float, float]:
 
 
 def _filled(elevations: Elevations, nodata: float | None, fill: float | None) -> NDArray[np.float64]:
-    """Heights (H, W) in their own units, all finite."""
+    """A new array of heights (H, W) in their own units, all finite."""
     stored = elevations.stored
-    heights = np.asarray(stored, np.float64)
+    heights = np.array(stored, np.float64, order="C")  # changed in place from here on: large maps take memory enough
     if (elevations.scale, elevations.offset) != (1.0, 0.0):
-        heights = heights * elevations.scale + elevations.offset
+        heights *= elevations.scale
+        heights += elevations.offset
     void = np.zeros(stored.shape, np.bool_) if nodata is None else _is(stored, nodata)
     if void.any():
         if fill is None:
             raise ValueError(
                 f"found {_counted(void)} without a height ({nodata:g}), allowed: none, or a fill for them (--fill)"
             )
-        heights = np.where(void, fill, heights)
+        heights[void] = fill
     bad = ~np.isfinite(heights)
     if bad.any():
         first = heights[tuple(np.argwhere(bad)[0])]
@@ -159,7 +160,7 @@ def _is(stored: NDArray[Any], value: float) -> NDArray[np.bool_]:
 
 
 def _within(heights: NDArray[np.float64], low: float, high: float) -> NDArray[np.float64]:
-    """Heights from low to high as 0 to 1."""
+    """Heights from low to high as 0 to 1, in place."""
     lowest, highest = float(heights.min()), float(heights.max())
     if lowest < low or highest > high:
         outside = int(np.count_nonzero(heights < low) + np.count_nonzero(heights > high))
@@ -167,11 +168,10 @@ def _within(heights: NDArray[np.float64], low: float, high: float) -> NDArray[np
             f"found heights from {lowest:g} to {highest:g}, {outside} of {heights.size} texels outside, allowed: "
             f"{low:g} to {high:g}; a height_range (--height-range LOW,HIGH) says what becomes 0 and 1"
         )
-    if (low, high) == (0.0, 1.0):
-        return heights
-    values = heights - low if low else heights.copy()
-    values /= high - low
-    return values
+    if (low, high) != (0.0, 1.0):
+        heights -= low
+        heights /= high - low
+    return heights
 
 
 def _counted(mask: NDArray[np.bool_]) -> str:

@@ -61,7 +61,7 @@ def decode(data: bytes) -> Tiff:
     tifffile = needed("tifffile", _FILES)
     logging.getLogger("tifffile").addHandler(logging.NullHandler())  # its warnings are no second line of ours
     try:
-        with tifffile.TiffFile(BytesIO(data)) as file:
+        with BytesIO(data) as stream, tifffile.TiffFile(stream) as file:  # closed: its pages and it hold one another
             page = file.pages.first
             _check(page, len(data))
             samples = page.asarray()
