@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ibr_ref import displacement, io, models, oracle, shadows, splatting
-    from ibr_ref.scene import BasePolygon, Camera, DepthImage, Light, Mesh
+    from ibr_ref.scene import BasePolygon, Camera, DepthImage, DepthSet, Light, Mesh
 
 __version__ = "0.1.0"
 
@@ -24,6 +24,7 @@ __all__ = [
     "BasePolygon",
     "Camera",
     "DepthImage",
+    "DepthSet",
     "Light",
     "Mesh",
     "displacement",
