@@ -1,7 +1,8 @@
 """Cases as folders, and what ports hand in: everything of the oracle that touches a file."""
 
+from ibr_ref.oracle.files.changed import changed_stages, outdated
 from ibr_ref.oracle.files.content import stale
-from ibr_ref.oracle.files.load import changed_stages, load_case
+from ibr_ref.oracle.files.load import load_case
 from ibr_ref.oracle.files.problem import Problem
 from ibr_ref.oracle.files.submission import Submission, load_submission, submission_from_arrays
 from ibr_ref.oracle.files.write import export
@@ -13,6 +14,7 @@ __all__ = [
     "export",
     "load_case",
     "load_submission",
+    "outdated",
     "stale",
     "submission_from_arrays",
 ]
