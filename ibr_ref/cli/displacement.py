@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import emptiness, options
+from ibr_ref.cli import emptiness, options, own_case
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
+from ibr_ref.methods import named
 from ibr_ref.progress import progress
 from ibr_ref.searches import SEARCHES
 
@@ -118,6 +119,7 @@ def command(
         int, typer.Option(parser=options.whole, help="donnelly: layers of the distance texture.")
     ] = 32,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+    case: own_case.Folder = None,
 ) -> None:
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
     with progress(3) as step:
@@ -126,6 +128,7 @@ def command(
         from ibr_ref.scene import Camera, Light
 
         io.check_image_writable(out)
+        own_case.check_writable(case)
         if stages is not None:
             io.check_writable(stages)
         polygon = _polygon(
@@ -159,6 +162,7 @@ def command(
         if stages is not None:
             frame.save_stages(stages)
         frame.save(out)
+    own_case.write(case, scene, params)
     emptiness.say(frame, lambda: displacement.culled(scene, params))
 
 
@@ -220,6 +224,7 @@ def goes_with() -> dict[str, Beside]:
         "normal_height": Beside("it holds both", {"height": ABSENT, "normal": ABSENT}),
         "normal": Beside("--normal-height holds the normals", {"normal_height": ABSENT}),
         "facade": read("facade_map"),
+        "case": Beside(own_case.WHY, {"method": named("displacement").judged[1]}),
         "facade_tile": Beside("facade_tile is the size of its tiles", {"facade": GIVEN}),
         "steps": read("linear_steps"),
         "binary_steps": Beside(

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import emptiness, options
+from ibr_ref.cli import emptiness, options, own_case
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
+from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -142,6 +143,7 @@ def command(
         bool, typer.Option("--report", help="Print coverage, holes, overdraw, and the difference to the photograph.")
     ] = False,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+    case: own_case.Folder = None,
 ) -> None:
     """Splatting of reference images with depth (Lee & Park 2006) from a new view: of photographs, files, or a mesh."""
     if [msr, simple_texture, mesh].count(None) != 2:
@@ -154,6 +156,7 @@ def command(
         from ibr_ref.scene import Light
 
         io.check_image_writable(out)
+        own_case.check_writable(case)
         if stages is not None:
             io.check_writable(stages)
         photograph: DepthImage | None = None
@@ -187,6 +190,7 @@ def command(
         if stages is not None:
             picture.save_stages(stages)
         picture.save(out)
+    own_case.write(case, scene, params)
     emptiness.say(picture, lambda: splatting.culled(scene, params))
     if report:
         from ibr_ref.cli.splatting_report import report_lines
@@ -291,6 +295,7 @@ def goes_with() -> dict[str, Beside]:
     return {
         **always("out", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),
         **of_shape,
+        "case": Beside(own_case.WHY, {"shape": named("splatting").judged[1]}),
         "msr": Beside(one, {"simple_texture": ABSENT, "mesh": ABSENT}),
         "simple_texture": Beside(one, {"msr": ABSENT, "mesh": ABSENT}),
         "mesh": Beside(one, {"msr": ABSENT, "simple_texture": ABSENT}),
