@@ -51,6 +51,7 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
         **{f"render {m.name}": m.command.open().goes_with for m in methods.records() if m.command is not None},
         "export": _export,
         "check": _check,
+        "hunt": lambda: always("port", "method", "seconds", "seed", "out", "device"),
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),
