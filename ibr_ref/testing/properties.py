@@ -9,7 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.examination import examine
@@ -39,6 +39,7 @@ def assert_port(
     @settings(
         max_examples=max_examples,
         deadline=None,
+        phases=[phase for phase in settings().phases if phase is not Phase.explain],  # which takes minutes
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
     )
     @given(cases(method))
