@@ -15,7 +15,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ibr_ref import displacement, io, models, oracle, shadows, splatting
+    from ibr_ref import displacement, io, metrics, models, oracle, shadows, splatting
     from ibr_ref.scene import BasePolygon, Camera, DepthImage, DepthSet, Light, Mesh
 
 __version__ = "0.1.0"
@@ -29,13 +29,14 @@ __all__ = [
     "Mesh",
     "displacement",
     "io",
+    "metrics",
     "models",
     "oracle",
     "shadows",
     "splatting",
 ]
 
-_MODULES = ("displacement", "io", "models", "oracle", "shadows", "splatting")
+_MODULES = ("displacement", "io", "metrics", "models", "oracle", "shadows", "splatting")
 
 
 def __getattr__(name: str) -> Any:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import base_polygon, depth_set_options, emptiness, options
+from ibr_ref.cli import base_polygon, depth_set_options, emptiness, options, own_case
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
+from ibr_ref.methods import named
 from ibr_ref.progress import progress
 from ibr_ref.searches import SEARCHES
 
@@ -174,6 +175,7 @@ def command(
     depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+    case: own_case.Folder = None,
 ) -> None:
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
     with progress(3) as step:
@@ -182,6 +184,7 @@ def command(
         from ibr_ref.scene import Camera, Light
 
         io.check_image_writable(out, bits)
+        own_case.check_writable(case)
         if stages is not None:
             io.check_writable(stages)
         heights, normals = base_polygon.read_maps(
@@ -237,6 +240,7 @@ def command(
         if depth_set is not None:
             io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
         frame.save(out, bits)
+    own_case.write(case, scene, params)
     emptiness.say(frame, lambda: displacement.culled(scene, params))
 
 
@@ -272,6 +276,7 @@ def goes_with() -> dict[str, Beside]:
         "normal_height": Beside("it holds both", {"height": ABSENT, "normal": ABSENT}),
         "normal": Beside("--normal-height holds the normals", {"normal_height": ABSENT}),
         "facade": read("facade_map"),
+        "case": Beside(own_case.WHY, {"method": named("displacement").judged[1]}),
         "facade_tile": Beside("facade_tile is the size of its tiles", {"facade": GIVEN}),
         "steps": read("linear_steps"),
         "binary_steps": Beside(

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import depth_set_options, emptiness, options
+from ibr_ref.cli import depth_set_options, emptiness, options, own_case
 from ibr_ref.cli.command import given
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
+from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -168,6 +169,7 @@ def command(
     depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+    case: own_case.Folder = None,
 ) -> None:
     """Shadows by image warping (Kang & Ihm 2002) of a mesh that moves over a floor with steps."""
     with progress(4) as step:
@@ -175,6 +177,7 @@ def command(
         from ibr_ref import io, models, shadows
 
         io.check_image_writable(out, bits)
+        own_case.check_writable(case)
         for path in (stages, None if maps is None or _kept(maps) else maps):
             if path is not None:
                 io.check_writable(path)
@@ -225,6 +228,7 @@ def command(
         typer.echo(line)
     emptiness.say(frame, lambda: shadows.culled(scene))
     if not method.soft:
+        own_case.write(case, scene, params, **({} if prepared is None else {"maps": prepared}))
         emptiness.say_cut(shadows.cut_by_light(scene, params))
 
 
@@ -307,6 +311,7 @@ def goes_with() -> dict[str, Beside]:
     return {
         **always("out", "bits", "caster", "offset", "light", "light_target", "method", "eye", "target", "near", "far"),
         **always("size", "report", "stages", "depth_set"),
+        "case": Beside(own_case.WHY, {"method": named("shadows").judged[1]}),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),
         "light_size": Beside(

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import depth_set_options, emptiness, options, splatting_sources
+from ibr_ref.cli import depth_set_options, emptiness, options, own_case, splatting_sources
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
+from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -160,6 +161,7 @@ def command(
     point_cloud: depth_set_options.PointCloud = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+    case: own_case.Folder = None,
 ) -> None:
     """Splatting of reference images with depth (Lee & Park 2006) from a new view: of photographs, files, or a mesh."""
     splatting_sources.check(msr, rgbd, simple_texture, mesh, cameras, view, pose, eye)
@@ -169,6 +171,7 @@ def command(
         from ibr_ref.scene import Light
 
         io.check_image_writable(out, bits)
+        own_case.check_writable(case)
         for path in (stages, point_cloud):
             if path is not None:
                 io.check_writable(path)
@@ -225,6 +228,7 @@ def command(
         if stages is not None:
             picture.save_stages(stages)
         picture.save(out, bits)
+    own_case.write(case, scene, params)
     emptiness.say(picture, lambda: splatting.culled(scene, params))
     if report:
         from ibr_ref.cli.splatting_report import report_lines
@@ -281,6 +285,7 @@ def goes_with() -> dict[str, Beside]:
         "frame": Beside("it is about photographs", {"msr": GIVEN}),
         **{name: Beside("it is about pictures with depth", {"rgbd": GIVEN}) for name in told},
         "pose": Beside("it is one of the set's poses, in place of --view", {"rgbd": GIVEN, "view": ABSENT}),
+        "case": Beside(own_case.WHY, {"shape": named("splatting").judged[1]}),
         **{
             name: Beside("reference images are made of a mesh", {"mesh": GIVEN}) for name in ("count", "reference_size")
         },

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.io.images import write_image
+from ibr_ref.io.images import png_bytes, write_image
 from ibr_ref.io.outputs import atomic
 from ibr_ref.scene import Camera, DepthImage
 
@@ -24,6 +24,15 @@ class Frame:
     """(H, W) window depth: 0 at the near plane, 1 at the far plane and where nothing is shown."""
     stages: dict[str, Any] = field(default_factory=dict)
     """Arrays by name, "stage.array" (of an atlas: a tuple of them, one a page); empty with stages=False."""
+
+    def __repr__(self) -> str:
+        height, width = self.depth.shape
+        stages = list(dict.fromkeys(name.partition(".")[0] for name in self.stages))
+        return f"Frame({width} x {height}, {'stages ' + ', '.join(stages) if stages else 'no stages'})"
+
+    def _repr_png_(self) -> bytes:
+        """What notebooks show: the picture."""
+        return png_bytes(self.color)
 
     def save(self, path: str | PathLike[str], bits: int = 8) -> None:
         """Write the picture as `write_image` does: .png in 8 or 16 bits, .jpg, or .exr with the colours as they are."""

@@ -79,6 +79,11 @@ def write_image(path: str | PathLike[str], image: ArrayLike, bits: int = 8) -> N
         file.write(data)
 
 
+def png_bytes(image: ArrayLike) -> bytes:
+    """What `write_image` would write into a .png, in 8 bits. Raises ValueError as it does."""
+    return _encoded(_quantized(_checked("image", image), 8), ".png")
+
+
 def check_image_writable(path: str | PathLike[str], bits: int = 8) -> None:
     """Raise what `write_image` would for this name, before long work; nothing is written."""
     _kind(path, bits)
