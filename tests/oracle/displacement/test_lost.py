@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from ibr_ref.oracle.arithmetic import decisions
@@ -24,3 +25,12 @@ def test_a_right_port_is_not_accused_where_outcomes_are_too_many(
     judgements = REFEREE.judge_stages(case(name), PROFILES["d3d11"], arrays)
     assert wrong(judgements) == []
     assert any(j.undecided.any() for j in judgements)
+
+
+def test_vertices_that_are_no_numbers_are_wrong() -> None:
+    """They cover nothing, and are no error."""
+    arrays = draw("displacement-planes", Policy())
+    arrays["vertex.clip"] = np.full_like(arrays["vertex.clip"], np.nan)
+    judgements = REFEREE.judge_stages(case("displacement-planes"), PROFILES["ieee32"], arrays)
+    assert judgements[0].stage == "vertex"
+    assert judgements[0].wrong.all()
