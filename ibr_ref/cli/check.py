@@ -40,7 +40,10 @@ def command(
     ] = None,
     device: Annotated[
         str | None,
-        typer.Option(help=f"{_DEVICES}. Without: port.json's, or the tightest that explains all."),
+        typer.Option(
+            help=f"{_DEVICES}; with numbers, as in gl,subpixel_bits=4; or a .json file of them. "
+            "Without: port.json's, or the tightest that explains all."
+        ),
     ] = None,
     json: Annotated[
         Path | None,
