@@ -47,7 +47,7 @@ class Sampler:
 
     def mix(self, texels: list[Floats], fx: Floats, fy: Floats) -> Floats:
         """Of four texels by their weights."""
-        upper, lower = (self.ops.filtered(self.ops.lerp(*texels[k : k + 2], fx), texels) for k in (0, 2))
+        upper, lower = (self.ops.filtered(self.ops.lerp(texels[k], texels[k + 1], fx), texels) for k in (0, 2))
         return self.ops.filtered(self.ops.lerp(upper, lower, fy), texels)
 
     def bilinear(self, image: Floats, u: Floats, v: Floats) -> Floats:
