@@ -7,17 +7,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.conventions import conventions
 from ibr_ref.oracle.declaration import ANY, Declaration, declared
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Explains, Handed, Judgement, TraceRow
+from ibr_ref.oracle.judgement import Explains, Explanation, Handed, Judgement, TraceRow
 from ibr_ref.oracle.referees import referee
 from ibr_ref.oracle.referees.rows import heading, text
 from ibr_ref.oracle.trials import Trial, judge, needed, tightest
-from ibr_ref.oracle.verdict import Bias, Box, Cause, Outcome, StageVerdict, TraceStep, Verdict, Witness
+from ibr_ref.oracle.verdict import Bias, Box, Outcome, StageVerdict, TraceStep, Verdict, Witness
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,8 +79,10 @@ def examine(
     }
     image = next((j for j in judgements if j.stage == "image"), None)
     if image is not None:
-        fields["undecided_share"] = float(image.undecided.mean())
-        fields["median_width"] = _median(image)
+        # Of what is drawn: a background is decided anywhere, and its width is none.
+        drawn = image.undecided | (case.frame.depth < 1.0)
+        fields["undecided_share"] = float(image.undecided[drawn].mean()) if drawn.any() else 0.0
+        fields["median_width"] = _median(image.width[drawn])
     wrong = _first_wrong(judgements)
     found: tuple[Bias, ...] = ()
     if image is not None:
@@ -92,8 +95,9 @@ def examine(
     if wrong is not None:
         fields["first_wrong_stage"] = wrong.stage
         fields["needs"] = needed(case, handed, trial)
-        if name_causes:
-            fields["causes"] = _causes(case, trial.device, handed, wrong)
+        explanation = _explanation(case, trial.device, handed, wrong) if name_causes else None
+        if explanation is not None:
+            fields |= {"causes": explanation.causes, "suspects": explanation.given_up_after}
         if image is not None and image.wrong.any():
             fields["conventions"] = conventions(case, trial.device, handed, int(image.wrong.sum()))
     else:
@@ -114,8 +118,8 @@ def _first_wrong(judgements: Sequence[Judgement]) -> Judgement | None:
     return next((j for j in judgements if j.wrong.any()), None)
 
 
-def _median(judgement: Judgement) -> float | None:
-    widths = judgement.width[np.isfinite(judgement.width)]
+def _median(widths: NDArray[np.float64]) -> float | None:
+    widths = widths[np.isfinite(widths)]
     return float(np.median(widths)) if widths.size else None
 
 
@@ -137,7 +141,7 @@ def _summary(case: Case, device: Device, handed: Handed, judgement: Judgement) -
         undecided=int(judgement.undecided.sum()),
         box=box,
         blamed={name: int(count) for name, count in zip(judgement.arrays, counts, strict=False) if count},
-        median_width=_median(judgement),
+        median_width=_median(judgement.width),
         witness=_witness(case, device, handed, judgement) if len(wrong) else None,
     )
 
@@ -174,7 +178,7 @@ def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -
     )
 
 
-def _causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...] | None:
+def _explanation(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
     """Of the methods whose known bugs are programs."""
     judge_of = referee(case.method)
     return judge_of.causes(case, device, handed, wrong) if isinstance(judge_of, Explains) else None

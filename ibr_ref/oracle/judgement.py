@@ -132,9 +132,18 @@ class Referee(Protocol):
         """The continuous parameters that move the image."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Explanation:
+    """Which known bugs leave no element of a wrong stage unexplained."""
+
+    causes: tuple[Cause, ...]
+    given_up_after: int | None = None
+    """After how many suspects the search was ended for what it costs; None: all were tried."""
+
+
 @runtime_checkable
 class Explains(Protocol):
     """A judge that names bugs."""
 
-    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...] | None:
-        """The known bugs that leave no element of a wrong stage unexplained."""
+    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
+        """The known bugs that explain a wrong stage; None: not looked for."""

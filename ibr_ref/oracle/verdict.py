@@ -142,11 +142,14 @@ class Verdict(_Record):
     causes: tuple[Cause, ...] | None = None
     """Known bugs that explain the stage; several: this case does not tell them apart; none: no known one does. None where
     none was looked for."""
+    suspects: int | None = None
+    """How many known bugs were tried before the search was ended for what it costs, so that others may explain the stage
+    too; None where all were."""
     conventions: tuple[Convention, ...] = ()
     """Those that were worth a judgement."""
     biases: tuple[Bias, ...] = ()
     undecided_share: float | None = None
-    """Of the picture's pixels."""
+    """Of the picture's pixels that something is drawn at, or may be."""
     median_width: float | None = None
     """Of the picture's accepted colours."""
 

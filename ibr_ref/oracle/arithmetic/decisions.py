@@ -23,6 +23,7 @@ class Decisions:
 
     def __init__(self) -> None:
         self.names: dict[str, int] = {}
+        self.rows = 0  # that have been run, forks and all
         self.begin(np.zeros(1, np.int64))
 
     @staticmethod
@@ -79,6 +80,7 @@ class Decisions:
         paths, lost, parts = np.zeros(count, np.int64), np.zeros(count, np.bool_), []
         while True:
             self.begin(origin, taken, known)
+            self.rows += len(origin)
             self.names = dict(names)  # another run's symbols have other names, a fork's the same
             parts.append({"origin": origin, **program(origin)})
             lost[origin[self.lost]] = True

@@ -94,9 +94,12 @@ class Number(_Speaks):
     def plus(self, other: Any, sign: float = 1.0) -> Number:
         """The sum or the difference, not rounded."""
         other = self.ops.of(other)
-        slopes = {k: a + sign * b for k, a, b in self.ops.pairs(self, other)}
+        put = np.add if sign > 0.0 else np.subtract
+        slopes = dict(self.slopes)
+        for k, s in other.slopes.items():
+            slopes[k] = put(slopes.get(k, 0.0), s)
         lane = self.ops.lane(self, other)
-        return Number(self.ops, self.value + sign * other.value, self.error + other.error, slopes, lane)
+        return Number(self.ops, put(self.value, other.value), self.error + other.error, slopes, lane)
 
     def absorbed(self, keep: tuple[str, ...] = ()) -> Number:
         """With its symbols, but those to keep, in its error: what leaves a run, for symbols have names within one only."""

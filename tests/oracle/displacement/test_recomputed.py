@@ -62,14 +62,16 @@ def test_hits_shades_and_colours(port: Port) -> None:
     before = abs(hits.height_before.value - port.floats("march.height_before")[hits.pixel]) <= ROUNDING
     assert set(hits.pixel[before]) == set(hits.pixel)
     hits = shade_input(port, hits)
-    shades = shades_of(model, hits)
+    shades, lost = shades_of(model, hits)
+    assert not len(lost)
     same = port.agreement("shade.lit", shades.pixel, shades.lit)
     for name in ("albedo", "normal"):
         theirs = port.floats(f"shade.{name}")[shades.pixel]
         same &= (abs(values(getattr(shades, name)) - theirs) <= ROUNDING).all(axis=1)
     assert set(shades.pixel[same]) == set(np.flatnonzero(port.ints("march.hit_index") >= 0))
     surfaces = light_input(port, hits, shades)
-    index, color = lighted(model, hits, surfaces)
+    index, color, lost = lighted(model, hits, surfaces)
+    assert not len(lost)
     assert len(index) >= len(hits)
     shown = port.floats("depth") < 1.0
     pixel = surfaces.pixel[index]

@@ -69,6 +69,7 @@ class Case:
     def on(self, do: Any) -> Self:
         """On another arithmetic: a device's, or bounds of what devices make of it."""
         self.do = do
+        self.multiplied: dict[int, tuple[Patch, list[Vector], list[Vector]]] = {}
         camera = self.scene.camera
         self.view_from_world, self.clip_from_view = do.matrix(camera.view_from_world), do.matrix(camera.clip_from_view)
         self.eye, self.light = self.upload(camera.eye), self.upload(self.scene.light.homogeneous)

@@ -119,11 +119,18 @@ class Vertex(Case):
         clip = self.to_clip(at)
         if not (self.do.bounded and self.right("to_clip", "to_world")):
             return clip
-        from_world = self._product(self.clip_from_view, self.view_from_world)
-        axes = [patch.edge_u, patch.edge_v, patch.up, patch.corner]
-        from_patch = self._product(from_world, [*([a[i] for a in axes] for i in range(3)), [0.0, 0.0, 0.0, 1.0]])
+        from_world, from_patch = self._multiplied(patch)
         ways = ((from_world, at), (from_patch, point))
         return self.do.either(clip, *(lambda m=m, p=p: [self.do.dot(row, [*p, 1.0]) for row in m] for m, p in ways))
+
+    def _multiplied(self, patch: Patch) -> tuple[list[Vector], list[Vector]]:
+        """The matrices from the world and from a patch to clip space; the same for every call."""
+        if id(patch) not in self.multiplied:
+            from_world = self._product(self.clip_from_view, self.view_from_world)
+            axes = [patch.edge_u, patch.edge_v, patch.up, patch.corner]
+            from_patch = self._product(from_world, [*([a[i] for a in axes] for i in range(3)), [0.0, 0.0, 0.0, 1.0]])
+            self.multiplied[id(patch)] = patch, from_world, from_patch
+        return self.multiplied[id(patch)][1:]
 
     def _product(self, a: Any, b: Any) -> list[Vector]:
         return [[self.do.dot(row, [r[j] for r in b]) for j in range(4)] for row in map(list, a)]

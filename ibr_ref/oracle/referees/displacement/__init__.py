@@ -12,7 +12,7 @@ import numpy as np
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow, up_to
+from ibr_ref.oracle.judgement import Explanation, Handed, Judgement, Parameter, TraceRow, up_to
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.referees.displacement import image
 from ibr_ref.oracle.referees.displacement.cause import causes
@@ -21,7 +21,6 @@ from ibr_ref.oracle.referees.displacement.parameters import parameters
 from ibr_ref.oracle.referees.displacement.replay import Port
 from ibr_ref.oracle.referees.displacement.stages import Stages
 from ibr_ref.oracle.referees.displacement.trace import trace
-from ibr_ref.oracle.verdict import Cause
 
 __all__ = ["DisplacementReferee"]
 
@@ -55,8 +54,8 @@ class DisplacementReferee:
         with np.errstate(all="ignore"):
             return trace(case, device, handed, stage, index)
 
-    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> tuple[Cause, ...] | None:
-        """The known bugs that explain a wrong stage; None: not looked for, or too many to try."""
+    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
+        """The known bugs that explain a wrong stage; None: not looked for, as of a picture by itself."""
         return causes(case, device, handed, wrong)
 
     def parameters(self, case: Case) -> list[Parameter]:

@@ -6,7 +6,7 @@ it is kept, and split where the results are no planes over it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -30,6 +30,8 @@ VAGUE = 32.0
 """Times `FLAT`: a result that wide says nothing, and its pixel counts as undecided."""
 LEAST = 2.0**-6
 """Nor does a box that is smaller than this part of the whole one."""
+LIKELY = 0.25
+"""Of a box's half: around the place that the planes say, where most pixels of a right port are accepted at once."""
 MOST_BOXES = 200
 """Boxes of a pixel; beyond, it is accepted, and counts as undecided."""
 
@@ -83,7 +85,9 @@ class Search:
         open_ = ~self.accepted if among is None else ~self.accepted & among
         used = np.zeros(picture.pixels, np.int64)
         rows = np.flatnonzero(open_[looks.pixel])
-        boxes = self._tried(boxes, looks.take(rows), lost)
+        boxes, likely = self._tried(boxes, looks.take(rows), lost)
+        for found, many in picture.looks(likely):
+            self._tried(likely, found, many)  # what is left of them is a part of what is left of all
         while len(boxes):
             pixel = picture.fragments.pixel[boxes.fragment]
             keep = open_[pixel] & ~self.accepted[pixel]
@@ -92,11 +96,11 @@ class Search:
             full = used[pixel] > MOST_BOXES
             self.accepted[pixel[full]] = self.undecided[pixel[full]] = True
             boxes = boxes.take(~full)
-            left = [self._tried(boxes, found, many) for found, many in picture.looks(boxes)]
+            left = [self._tried(boxes, found, many)[0] for found, many in picture.looks(boxes)]
             boxes = joined_boxes(left) if left else boxes.take(slice(0, 0))
 
-    def _tried(self, boxes: Boxes, looks: Looks, lost: Ints) -> Boxes:
-        """Accept what is final, and hand back what is left of the boxes."""
+    def _tried(self, boxes: Boxes, looks: Looks, lost: Ints) -> tuple[Boxes, Boxes]:
+        """Accept what is final, and hand back what is left of the boxes, and where in them the port's pixels seem to lie."""
         looks = looks.take(self.picture.shown(looks))
         good, off, low, high = self._compared(looks)
         least = boxes.half[looks.box].max(axis=1, initial=0.0) <= LEAST
@@ -109,7 +113,10 @@ class Search:
         self.accepted[given_up] = self.undecided[given_up] = True
         go = good & ~final & ~self.accepted[looks.pixel]
         again = boxes.take(lost[~tiny]).parts()
-        return joined_boxes([again, _cut(boxes, looks.box[go], low[go], high[go], off[go])])
+        left = joined_boxes([again, _cut(boxes, looks.box[go], low[go], high[go], off[go])])
+        here = boxes.take(looks.box[go])
+        likely = replace(here, middle=here.middle + 0.5 * (low[go] + high[go]) * here.half, half=LIKELY * here.half)
+        return left, replace(likely, off=off[go])
 
     def _compared(self, looks: Looks) -> tuple[Bools, Floats, Floats, Floats]:
         """Whether outcomes may be the port's, how far they are from planes, and what of the box is left, in [-1, 1]."""

@@ -235,7 +235,8 @@ def _ports_hits(port: Port) -> Hits:
     index, point = port.ints("march.hit_index"), port.floats("march.hit")
     several = "raster.patch_id" in port.handed
     polygon = port.polygon() if several else np.zeros(port.pixels, np.int64)
-    pixel = np.flatnonzero((index >= 0) & np.isfinite(point).all(axis=1) & (polygon >= 0))
+    usable = (index >= 0) & np.isfinite(point).all(axis=1) & (polygon >= 0)
+    pixel = np.flatnonzero(usable if port.among is None else usable & port.among)
     count = len(pixel)
     zero = np.zeros(count, np.int64)
     none = Number(port.model.machine, np.zeros(count))
