@@ -48,7 +48,7 @@ def command(
     json: Annotated[
         Path | None,
         typer.Option(
-            help="Also write the verdict (--self-test: its tables) as JSON; -: on standard output, the words on standard error."
+            help="Also write the verdict (--self-test: its tables) as JSON; -: standard output, the words on standard error."
         ),
     ] = None,
     report: Annotated[Path | None, typer.Option(help="Also write it as one HTML page, with pictures.")] = None,
