@@ -210,3 +210,15 @@ PROFILES: dict[str, Device] = {device.name: device for device in sorted(_DEVICES
 """By name, in the order of their ranks."""
 LOOSEST = max(_DEVICES, key=lambda device: device.rank).name
 """It grants whatever any other does."""
+
+MOST_UNDECIDED = 0.005
+"""Share of a case's pixels that the profile which it is meant for may leave open."""
+
+
+def profile_of(undecided: Mapping[str, float]) -> str:
+    """The loosest profile that leaves no more open than `MOST_UNDECIDED`; where there is none, the one that leaves least.
+
+    undecided: share of a case's pixels by profile.
+    """
+    fit = [name for name, share in undecided.items() if share <= MOST_UNDECIDED]
+    return max(fit, key=lambda name: PROFILES[name].rank) if fit else min(undecided, key=lambda name: undecided[name])

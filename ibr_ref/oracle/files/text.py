@@ -91,7 +91,10 @@ everything is looked for.""".replace("NAMES", ", ".join(PROFILES)).replace("NUMB
 _JUDGED_ON = """An array is judged on those of yours that it is computed from; one that you do not hand in is made of what it
 reads in turn, and at last of the case. Normals and the nine maps, which a case hands over, you may also make yourself and go
 on with, if you hand them in, beside a picture too: without them it is judged with those of the case. No case depends on what
-the APIs leave undefined, such as pow(0, 0) or normalize(0)."""
+the APIs leave undefined, such as pow(0, 0) or normalize(0).
+
+To try one stage alone, before the others are written, feed it with the arrays of `expected/` that it is judged on, draw, and
+hand in its arrays and those: they are right, so that the verdict is on your stage."""
 
 
 def _expected(document: Document) -> str:

@@ -14,9 +14,9 @@ from ibr_ref import shadows
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.faults.kinds import Mutant, Variant
 from ibr_ref.oracle.ports.shadows import MUTANTS, VARIANTS, Port
+from ibr_ref.testing import shadows as strategies
 from tests import drawn
 from tests.oracle.ports.shadows_scenes import CASES, ELSEWHERE, Case, shows
-from tests.shadows import strategies
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -80,14 +80,14 @@ def test_in_doubles_it_is_the_reference(name: str) -> None:
 
 @pytest.mark.parametrize("number", range(40))
 def test_in_doubles_it_is_the_reference_on_drawn_scenes(number: int) -> None:
-    def agree(case: strategies.Case) -> None:
+    def agree(case: strategies.Drawn) -> None:
         scene, params = case.scene, case.params
         if params.method != "grid":
             warps = params.method == "warp"
             maps = shadows.prepare(scene, params, controls=case.controls) if warps else None
             check_exact(Case(scene, params, maps))
 
-    drawn.run_scene(number, strategies.cases(), agree)
+    drawn.run_scene(number, strategies.drawn(), agree)
 
 
 DESKTOPS = [variant for variant in VARIANTS if "," not in variant.profile]
