@@ -76,7 +76,7 @@ def command(
     json: Annotated[
         Path | None,
         typer.Option(
-            help="Also write the verdict, of many a list, or --self-test's tables as JSON; -: standard output, words on error."
+            help="Also write the verdict, of many a list, or --self-test's tables, as JSON; -: on standard output."
         ),
     ] = None,
     report: Annotated[
