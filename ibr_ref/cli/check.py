@@ -68,12 +68,15 @@ def command(
     ] = None,
     device: Annotated[
         str | None,
-        typer.Option(help=f"{_DEVICES}. Without: port.json's, or the tightest that explains all."),
+        typer.Option(
+            help=f"{_DEVICES}; with numbers, as in gl,subpixel_bits=4; or a .json file of them. "
+            "Without: port.json's, or the tightest that explains all."
+        ),
     ] = None,
     json: Annotated[
         Path | None,
         typer.Option(
-            help="Also write the verdict as JSON, of many a list; -: on standard output, the words on standard error."
+            help="Also write the verdict, of many a list, or --self-test's tables, as JSON; -: on standard output."
         ),
     ] = None,
     report: Annotated[
@@ -198,7 +201,7 @@ def _said(finding: Finding) -> str:
     verdict = finding.verdict
     if verdict.reasons:
         return verdict.reasons[0]
-    how = f"on {verdict.profile}"
+    how = f"on {verdict.device}"
     first = next((stage for stage in verdict.stages if stage.wrong), None)
     if first is not None:
         blamed = ", ".join(first.blamed)

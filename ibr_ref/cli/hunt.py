@@ -182,7 +182,9 @@ class _Folder:
             return f"{name}: {error}"
         submission = oracle.load_submission(drawn, case)
         problems = [str(problem) for problem in submission.problems]
-        examination = oracle.examine(case, submission.handed, profile=device or submission.profile, problems=problems)
+        examination = oracle.examine(
+            case, submission.handed, profile=device or submission.declaration, problems=problems
+        )
         oracle.write_report(examination, make_folder(self.place / "reports") / f"{name}.html")
         return examination.verdict.words().partition("\n")[0]
 

@@ -77,7 +77,7 @@ def _export() -> dict[str, Beside]:
     }
 
 
-_OF_FOLDERS = ("device", "json", "report", "junit", "watch", "fail_fast")
+_OF_FOLDERS = ("device", "report", "junit", "watch", "fail_fast")
 """Options of `check` that are about folders."""
 
 
@@ -85,7 +85,7 @@ def _check() -> dict[str, Beside]:
     alone: Others = {"self_test": ABSENT}
     return {
         **{name: Beside("--self-test takes no folders", alone) for name in ("case", "port")},
-        **{n: Beside("--self-test prints its tables alone", alone) for n in _OF_FOLDERS if n != "json"},
+        **{name: Beside("--self-test prints its tables alone", alone) for name in _OF_FOLDERS},
         **always("json", "self_test"),
         "method": Beside("--method goes with --self-test", {"self_test": GIVEN}),
     }

@@ -8,10 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ibr_ref.oracle.cases import Case
-from ibr_ref.oracle.device import LOOSEST, PROFILES
+from ibr_ref.oracle.declaration import Declaration, declared
+from ibr_ref.oracle.device import LOOSEST
 from ibr_ref.oracle.files import Submission, submission_from_arrays
 from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.trials import judge
+from ibr_ref.oracle.trials import FREEDOMS, judge
 
 Port = Callable[[Case], Submission]
 """Draws a case. Raises PortError where it does not."""
@@ -67,12 +68,19 @@ def bug_of(case: Case, port: Port, device: str | None, known: Collection[Bug] = 
         return _unless_known(Bug(case.method, "port", str(error)), known)
     if submission.problems:
         return _unless_known(Bug(case.method, "submission", submission.problems[0].file), known)
-    profile = PROFILES[device or submission.profile or LOOSEST]
-    judgements = judge(case, submission.handed, profile, to_first_wrong=not known)
-    wrong = [judgement for judgement in judgements if judgement.wrong.any()]
+    declaration = declared(device) if device else submission.declaration
+    wrong = _wrong(case, submission, declaration, to_first_wrong=not known)
+    if wrong and declaration.profile is None:
+        # It may be right on a device that no profile is, and that `tightest` would have looked for.
+        wrong = _wrong(case, submission, Declaration(None, {**FREEDOMS, **declaration.numbers}), not known) and wrong
     stages = [judgement for judgement in wrong if judgement.stage != "image"]  # a wrong stage shows in the picture
     found = (_bug(case, judgement) for judgement in stages or wrong)
     return next((bug for bug in found if bug not in known), None)
+
+
+def _wrong(case: Case, submission: Submission, declaration: Declaration, to_first_wrong: bool) -> list[Judgement]:
+    device = declaration.device(declaration.profile or LOOSEST)
+    return [j for j in judge(case, submission.handed, device, to_first_wrong=to_first_wrong) if j.wrong.any()]
 
 
 def _unless_known(bug: Bug, known: Collection[Bug]) -> Bug | None:

@@ -15,7 +15,7 @@ from ibr_ref import BasePolygon, Camera, Light, displacement, oracle
 from ibr_ref.displacement import Params, Scene, render
 from ibr_ref.oracle import Outcome
 from ibr_ref.oracle.arithmetic.device import Policy
-from ibr_ref.oracle.programs.displacement import Port
+from ibr_ref.oracle.programs.displacement.port import Port
 from tests.displacement.scenes import noise
 
 HEIGHTS = 0.5 * noise(6, 9, seed=1) + 0.2

@@ -192,6 +192,10 @@ class Bounds(Choices):
         x = self.of(fraction)
         return Number(self, x.value, x.error + self.device.weight_step, x.slopes, x.lane)
 
+    def filtered(self, mixed: Any, texels: Any) -> Any:
+        """A lerp of texels in floats: what filters do in bytes is known of the right filter as a whole."""
+        return mixed
+
     def depth(self, depth: Any) -> Number:
         """A window depth in the depth buffer."""
         x = self.of(depth)

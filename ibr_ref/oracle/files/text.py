@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from ibr_ref.contract import described, spelled
+from ibr_ref.oracle.declaration import NUMBERS as DECLARED
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.files.features import features
 from ibr_ref.oracle.files.fields import field_list, input_table
@@ -82,8 +83,9 @@ channel, which is not looked at. A picture of floats that are all k / 255 counts
 Every stage is judged on your own arrays of the stages before it, so hand in as many as you have: the verdict then names the
 first stage that is wrong. A decision (a comparison in the search, a depth test, an edge) may go either way where rounding on
 the device can turn it, and nowhere else. `port.json` may declare the device, `{"profile": "vulkan"}`, one of
-NAMES, from the tightest to the loosest; without, the tightest one that explains everything is
-looked for.""".replace("NAMES", ", ".join(PROFILES))
+NAMES, from the tightest to the loosest, and what it is asked for besides, such as
+`{"profile": "gl", "subpixel_bits": 4}`: NUMBERS. Without, the tightest one that explains
+everything is looked for.""".replace("NAMES", ", ".join(PROFILES)).replace("NUMBERS", ", ".join(DECLARED))
 
 
 _JUDGED_ON = """An array is judged on those of yours that it is computed from; one that you do not hand in is made of what it

