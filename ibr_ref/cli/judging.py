@@ -117,7 +117,8 @@ class Judging:
 
 def _without_a_partner(name: str, reason: str) -> Callable[[], Finding]:
     def judge() -> Finding:
-        from ibr_ref.oracle.verdict import Outcome, Verdict
+        from ibr_ref.oracle.findings import Outcome
+        from ibr_ref.oracle.verdict import Verdict
 
         return Finding(name, Verdict(outcome=Outcome.INCONCLUSIVE, case=name, method="", reasons=(reason,)), None, 0.0)
 

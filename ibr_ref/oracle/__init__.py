@@ -28,15 +28,16 @@ if TYPE_CHECKING:
     from ibr_ref.oracle.device import PROFILES, Device
     from ibr_ref.oracle.examination import Examination, examine
     from ibr_ref.oracle.files import Submission, export, load_case, load_submission, submission_from_arrays
+    from ibr_ref.oracle.findings import Outcome
     from ibr_ref.oracle.report import write as write_report
-    from ibr_ref.oracle.verdict import Outcome, Verdict
+    from ibr_ref.oracle.verdict import Verdict
 
 _HOMES = {
     "PROFILES": "device",
     "Case": "cases",
     "Device": "device",
     "Examination": "examination",
-    "Outcome": "verdict",
+    "Outcome": "findings",
     "Verdict": "verdict",
     "Submission": "files",
     "build": "cases",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.examination import Examination, examine
 from ibr_ref.oracle.files import Submission, stale
-from ibr_ref.oracle.verdict import Outcome
+from ibr_ref.oracle.findings import Outcome
 
 
 def check(case: Case, submission: Submission, *, profile: str | None = None, name_causes: bool = True) -> Examination:

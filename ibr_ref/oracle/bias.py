@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.findings import Bias
 from ibr_ref.oracle.judgement import Handed, Judgement, Parameter
 from ibr_ref.oracle.referees import referee
-from ibr_ref.oracle.verdict import Bias
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.findings import Convention
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.referees import referee
-from ibr_ref.oracle.verdict import Convention
 from ibr_ref.scene import Camera
 
 Image = NDArray[np.generic]

@@ -14,11 +14,12 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.conventions import conventions
 from ibr_ref.oracle.declaration import ANY, Declaration, declared
 from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.findings import Bias, Box, Outcome, StageVerdict, TraceStep, Witness
 from ibr_ref.oracle.judgement import Explains, Explanation, Handed, Judgement, TraceRow
 from ibr_ref.oracle.referees import referee
 from ibr_ref.oracle.referees.rows import heading, text
 from ibr_ref.oracle.trials import Trial, judge, needed, tightest
-from ibr_ref.oracle.verdict import Bias, Box, Outcome, StageVerdict, TraceStep, Verdict, Witness
+from ibr_ref.oracle.verdict import Verdict
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

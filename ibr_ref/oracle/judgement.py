@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.verdict import Cause
+from ibr_ref.oracle.findings import Cause
 
 Bools = NDArray[np.bool_]
 Handed = Mapping[str, Any]

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from itertools import groupby
 
+from ibr_ref.oracle.findings import Findings, Outcome, StageVerdict, Witness
 from ibr_ref.oracle.referees.rows import DIFFERS
-from ibr_ref.oracle.verdict import Outcome, StageVerdict, Verdict, Witness
 
 MOST_LINES = 30
 """Of a trace; a longer one is folded."""
 
 
-def words(verdict: Verdict, *, trace: bool = True) -> str:
+def words(verdict: Findings, *, trace: bool = True) -> str:
     """Some ten lines: what, where first, how many, one that is wrong, what would explain it; and that one's `trace`."""
     lines = [_headline(verdict)]
     lines += [f"  {reason}" for reason in verdict.reasons]
@@ -42,7 +42,7 @@ def words(verdict: Verdict, *, trace: bool = True) -> str:
     return "\n".join(lines)
 
 
-def _causes(verdict: Verdict) -> list[str]:
+def _causes(verdict: Findings) -> list[str]:
     """Which known bugs explain it."""
     if verdict.causes is None:
         return []
@@ -57,7 +57,7 @@ def _causes(verdict: Verdict) -> list[str]:
     return lines + [f"    {cause.name}: {cause.says}" for cause in verdict.causes] + ended
 
 
-def _headline(verdict: Verdict) -> str:
+def _headline(verdict: Findings) -> str:
     head = f"{verdict.outcome}: {verdict.case}"
     if verdict.outcome is Outcome.INCONCLUSIVE:
         return f"{head}, the submission cannot be judged."

@@ -23,8 +23,9 @@ import numpy as np
 
 from ibr_ref import oracle
 from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.findings import Outcome
 from ibr_ref.oracle.report import page
-from ibr_ref.oracle.verdict import Outcome, Verdict
+from ibr_ref.oracle.verdict import Verdict
 from tests.oracle.tiny_cases import TINY, handed_of
 
 Array = np.ndarray

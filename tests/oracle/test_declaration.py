@@ -14,8 +14,8 @@ from ibr_ref import oracle
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.declaration import ANY, FILTER_BYTES, NUMBERS, Declaration, declared, device_of
 from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.findings import Outcome
 from ibr_ref.oracle.self_test import plain_port
-from ibr_ref.oracle.verdict import Outcome
 
 
 def drawn(name: str, policy: Policy, port: Any = None) -> tuple[oracle.Case, dict[str, Any]]:

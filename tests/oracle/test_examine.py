@@ -7,7 +7,8 @@ import pytest
 
 from ibr_ref.oracle.device import LOOSEST, PROFILES
 from ibr_ref.oracle.examination import examine
-from ibr_ref.oracle.verdict import Outcome, Verdict
+from ibr_ref.oracle.findings import Outcome
+from ibr_ref.oracle.verdict import Verdict
 from tests.oracle.plain_referee import box_case
 
 pytestmark = pytest.mark.usefixtures("plain_referee")

@@ -10,8 +10,8 @@ import pytest
 from ibr_ref import oracle
 from ibr_ref.cli import main
 from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.findings import Outcome
 from ibr_ref.oracle.plugin import PortCase
-from ibr_ref.oracle.verdict import Outcome
 from tests.oracle.fuzz_submissions import BLOCK, Input, complaint, made, replacements, run
 from tests.oracle.tiny_cases import TINY, handed_of
 

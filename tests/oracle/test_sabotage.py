@@ -15,7 +15,7 @@ from scipy.ndimage import gaussian_filter, zoom
 
 from ibr_ref import oracle
 from ibr_ref.oracle import Case
-from ibr_ref.oracle.verdict import Outcome
+from ibr_ref.oracle.findings import Outcome
 
 CASE, OTHER, SAME_SIZE = "splatting-lamp", "splatting-ball", "splatting-shelves"
 Maker = Callable[[Path, Case], None]

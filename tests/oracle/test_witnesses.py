@@ -11,8 +11,9 @@ import pytest
 
 from ibr_ref import oracle
 from ibr_ref.oracle.examination import Examination
+from ibr_ref.oracle.findings import Outcome, Witness
 from ibr_ref.oracle.report import page
-from ibr_ref.oracle.verdict import Outcome, Verdict, Witness
+from ibr_ref.oracle.verdict import Verdict
 from ibr_ref.oracle.words import MOST_LINES
 from tests.oracle.tiny_cases import TINY, handed_of
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.examination import Examination, examine
+from ibr_ref.oracle.findings import Outcome, StageVerdict
 from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.verdict import Outcome, StageVerdict, Verdict
+from ibr_ref.oracle.verdict import Verdict
 from tests.oracle.plain_referee import box_case
 
 

@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterable
 from xml.etree import ElementTree
 
-from ibr_ref.oracle.verdict import Outcome, Verdict
+from ibr_ref.oracle.findings import Outcome
+from ibr_ref.oracle.verdict import Verdict
 
 _NO_CHARACTER = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """What XML 1.0 has no way to write, section 2.2."""

@@ -10,7 +10,7 @@ import pytest
 
 from ibr_ref.oracle.device import LOOSEST, PROFILES
 from ibr_ref.oracle.examination import examine
-from ibr_ref.oracle.verdict import Outcome
+from ibr_ref.oracle.findings import Outcome
 from tests.oracle.displacement.drawn import REFEREE, Arrays, case, reference
 
 

@@ -16,6 +16,7 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.oracle.faults.kinds import Mutant
+from ibr_ref.oracle.findings import Cause
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.programs.displacement.raster import Raster
@@ -23,7 +24,6 @@ from ibr_ref.oracle.programs.displacement.vertex import Vertex
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.replay import ARRAYS, Port
 from ibr_ref.oracle.referees.displacement.stages import STAGES, Stages
-from ibr_ref.oracle.verdict import Cause
 
 FEW, SOME = 6, 40
 """Wrong elements that are tried first, up to twice as many; and next, with as many right ones."""
