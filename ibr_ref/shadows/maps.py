@@ -99,13 +99,13 @@ def depth(view: View, offset: Array, size: int) -> Array:
 
 
 def projected_boxes(view: View, positions: Array) -> Array | None:
-    """(3, 3, 2, 2) [u or v][low, high] of the caster's vertices in the nine maps, within them or not.
+    """(3, 3, 2, 2) [u or v][low, high] of the corners of the caster's triangles in the nine maps, within them or not.
 
-    None where a vertex is not in front of the light at one of the positions (3, 3, 2).
+    None where a corner is not in front of the light at one of the positions (3, 3, 2).
     """
-    boxes = []
+    boxes, corners = [], view.vertices[np.unique(view.triangles)]
     for offset in positions.reshape(-1, 2):
-        clip = to_clip(place(view.vertices, view.axes, offset), view.view_from_world, view.clip_from_view)
+        clip = to_clip(place(corners, view.axes, offset), view.view_from_world, view.clip_from_view)
         if not (clip[:, 3] > 0.0).all():
             return None
         u, v = 0.5 + 0.5 * clip[:, 0] / clip[:, 3], 0.5 - 0.5 * clip[:, 1] / clip[:, 3]

@@ -98,7 +98,7 @@ def test_quality_by_hand() -> None:
 def test_qualities(tmp_path: Path) -> None:
     maps = ran(quality.maps_quality, tmp_path)
     values = np.array([row[1:] for row in maps.tables[0].rows], np.float64)
-    assert values.shape == (6, 9)
+    assert values.shape == (7, 9)
     assert ((values >= 0.0) & (values <= 1.0)).all()
     moved = next(claim for claim in maps.claims if claim.claim.startswith("A moved light"))
     assert moved.holds

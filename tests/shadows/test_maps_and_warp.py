@@ -216,16 +216,20 @@ def test_the_regular_grid_leaves_the_image(shape: tuple[int, int]) -> None:
     st.booleans(),
     st.booleans(),
     st.sampled_from([0.0, 0.2, 0.5]),
+    st.booleans(),
 )
-def test_the_stage_is_the_twins(seed: int, x: float, y: float, nearest: bool, depth: bool, boxes: float) -> None:
+def test_the_stage_is_the_twins(
+    seed: int, x: float, y: float, nearest: bool, depth: bool, boxes: float, even: bool
+) -> None:
     positions = maps.positions(np.array([-1.0, -1.0]), np.array([1.0, 1.0]), np.array([0.3, 0.0]))
     random = np.random.RandomState(seed)
     images = np.stack([drawn_image(random, 20, depth, boxes) for _ in range(9)]).reshape(3, 3, 20, 20)
     levels = None if depth else np.arange(256) / 16.0
     controls = moved_controls(seed)
     nine = warp.Nine(images, levels, spans(images, levels, float(depth)), controls, float(depth))
-    ours = warp.warp_stage(nine, *warp.locate(positions, np.array([x, y])), nearest)
+    depths = None if even else random.uniform(0.5, 2.0, (3, 3))
+    ours = warp.warp_stage(nine, *warp.locate(positions, np.array([x, y])), depths, nearest)
     params = parameters(policy="nearest" if nearest else "dissolve", content="depth" if depth else "mask")
-    theirs = twin.warped_map((x, y), positions, images if depth else images / 16.0, controls, params)
+    theirs = twin.warped_map((x, y), positions, images if depth else images / 16.0, controls, params, depths)
     for name in theirs._fields:
         assert np.array_equal(getattr(ours, name), getattr(theirs, name)), name
