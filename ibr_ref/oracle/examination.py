@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases.case import Case
@@ -69,8 +70,10 @@ def examine(
     }
     image = next((j for j in judgements if j.stage == "image"), None)
     if image is not None:
-        fields["undecided_share"] = float(image.undecided.mean())
-        fields["median_width"] = _median(image)
+        # Of what is drawn: a background is decided anywhere, and its width is none.
+        drawn = image.undecided | (case.frame.depth < 1.0)
+        fields["undecided_share"] = float(image.undecided[drawn].mean()) if drawn.any() else 0.0
+        fields["median_width"] = _median(image.width[drawn])
     wrong = _first_wrong(judgements)
     found: tuple[Bias, ...] = ()
     if image is not None:
@@ -105,8 +108,8 @@ def _first_wrong(judgements: Sequence[Judgement]) -> Judgement | None:
     return next((j for j in judgements if j.wrong.any()), None)
 
 
-def _median(judgement: Judgement) -> float | None:
-    widths = judgement.width[np.isfinite(judgement.width)]
+def _median(widths: NDArray[np.float64]) -> float | None:
+    widths = widths[np.isfinite(widths)]
     return float(np.median(widths)) if widths.size else None
 
 
@@ -128,7 +131,7 @@ def _summary(case: Case, device: Device, handed: Handed, judgement: Judgement) -
         undecided=int(judgement.undecided.sum()),
         box=box,
         blamed={name: int(count) for name, count in zip(judgement.arrays, counts, strict=False) if count},
-        median_width=_median(judgement),
+        median_width=_median(judgement.width),
         witness=_witness(case, device, handed, judgement) if len(wrong) else None,
     )
 

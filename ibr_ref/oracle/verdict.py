@@ -143,7 +143,7 @@ class Verdict(_Record):
     """Those that were worth a judgement."""
     biases: tuple[Bias, ...] = ()
     undecided_share: float | None = None
-    """Of the picture's pixels."""
+    """Of the picture's pixels that something is drawn at, or may be."""
     median_width: float | None = None
     """Of the picture's accepted colours."""
 

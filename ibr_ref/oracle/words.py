@@ -35,7 +35,7 @@ def words(verdict: Verdict, *, trace: bool = True) -> str:
         width = (
             "" if verdict.median_width is None else f", median width of the accepted colours {verdict.median_width:.2g}"
         )
-        lines.append(f"  Undecided pixels: {100 * verdict.undecided_share:.3f} %{width}.")
+        lines.append(f"  Undecided: {100 * verdict.undecided_share:.3f} % of the hit pixels{width}.")
     return "\n".join(lines)
 
 

@@ -156,10 +156,23 @@ class Bounds(Decisions):
         )
 
     def unit(self, a: Sequence[Any]) -> list[Number]:
-        """A vector divided by its length: no component beyond 1 and its roundings."""
-        length = self.root(self.dot(a, a))
-        most = 1.0 + 2.0 * (2.0 * self.device.operation + self.device.root + self.device.quotient) * UNIT
-        return [self.within(self.divide(x, length), -most, most) for x in a]
+        """A vector divided by its length: no component beyond what the ranges of all of them allow, and roundings."""
+        numbers, length = [self.of(x) for x in a], self.root(self.dot(a, a))
+        return [self.between(self.divide(x, length), *self._share_of_length(numbers, i)) for i, x in enumerate(numbers)]
+
+    def _share_of_length(self, vector: Sequence[Number], i: int) -> tuple[Any, Any]:
+        """The ends of x / sqrt(x^2 + r^2): it rises with x, and is the nearer to 0 the larger r, the other components."""
+        x, others = vector[i], [y for j, y in enumerate(vector) if j != i]
+        least = reduce(np.add, [np.maximum(np.abs(y.value) - y.deviation, 0.0) ** 2 for y in others])
+        most = reduce(np.add, [(np.abs(y.value) + y.deviation) ** 2 for y in others])
+        slack = 2.0 * (2.0 * self.device.operation + self.device.root + self.device.quotient) * UNIT
+        ends = []
+        with np.errstate(all="ignore"):
+            for end, away in ((x.low, -1.0), (x.high, 1.0)):
+                far = np.where(away * end > 0.0, least, most)
+                share = end / np.sqrt(end**2 + far)
+                ends.append(np.where(np.isnan(share), away, share) + away * slack * np.abs(share))
+        return np.maximum(ends[0], -1.0 - slack), np.minimum(ends[1], 1.0 + slack)
 
     def power(self, base: Any, exponent: int) -> Number:
         """A whole power of a number >= 0: by products, or exp2(e log2 x) where x > 0, and 0 where x is 0."""
@@ -195,12 +208,13 @@ class Bounds(Decisions):
         error = np.maximum(f.error, np.where(np.isnan(spread), np.inf, spread))
         return Number(self, f.value, error, f.slopes, self.lane(f, g))
 
-    def within(self, x: Number, low: float, high: float) -> Number:
-        """What is known to lie in an interval."""
-        far = ~(x.deviation <= high - low)
-        value = np.where(far & ~np.isfinite(x.value), 0.0, np.where(far, np.clip(x.value, low, high), x.value))
-        slopes = {k: np.where(far, 0.0, s) for k, s in x.slopes.items()}
-        return Number(self, value, np.where(far, high - low, x.error), slopes, x.lane)
+    def between(self, x: Number, low: Any, high: Any) -> Number:
+        """What is known to lie between two ends, where that says more than its own bound."""
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        half = half + 2.0**-52 * np.abs(middle)
+        wide = ~(x.deviation <= half)
+        slopes = {k: np.where(wide, 0.0, s) for k, s in x.slopes.items()}
+        return Number(self, np.where(wide, middle, x.value), np.where(wide, half, x.error), slopes, x.lane)
 
     def beyond(self, x: Number, least: float, up: Any) -> Number:
         """What is decided to be >= `least` (`up`), or <= -`least`."""

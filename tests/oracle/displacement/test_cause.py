@@ -32,7 +32,10 @@ def named(name: str, arrays: Arrays) -> list[str]:
     wrong = next((j for j in judgements if j.wrong.any()), None)
     if wrong is None:
         pytest.skip("not visible on this case")
-    return [cause.name for cause in REFEREE.causes(case(name), IEEE32, arrays, wrong)]
+    found = REFEREE.causes(case(name), IEEE32, arrays, wrong)
+    assert found is not None
+    assert found.given_up_after is None
+    return [cause.name for cause in found.causes]
 
 
 @pytest.mark.parametrize("mutant", STAGED)

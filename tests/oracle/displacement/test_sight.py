@@ -8,10 +8,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.device import LOOSEST, PROFILES
+from ibr_ref.oracle.examination import examine
+from ibr_ref.oracle.verdict import Outcome
 from tests.oracle.displacement.drawn import REFEREE, Arrays, case, reference
-
-LOOSE = ("d3d11", "vulkan", "gl")
 
 
 def hits(name: str) -> np.ndarray:
@@ -32,9 +32,14 @@ def painted(name: str, color: np.ndarray) -> np.ndarray:
     return picture
 
 
-@pytest.mark.parametrize("profile", LOOSE)
 @pytest.mark.parametrize(
-    "name", ["displacement-city", "displacement-slope", "displacement-tiles", "displacement-crossing"]
+    ("name", "profile"),
+    [
+        ("displacement-city", "d3d11"),
+        ("displacement-slope", "vulkan"),
+        ("displacement-tiles", "gl"),
+        ("displacement-crossing", "d3d11"),
+    ],
 )
 def test_a_random_colour_is_wrong(name: str, profile: str) -> None:
     count = int(hits(name).sum())
@@ -42,12 +47,17 @@ def test_a_random_colour_is_wrong(name: str, profile: str) -> None:
     assert accepted(name, profile, color=random) <= 0.01 * count
 
 
-def test_the_magenta_city_is_wrong() -> None:
-    count = int(hits("displacement-city").sum())
-    assert (
-        accepted("displacement-city", "d3d11", color=painted("displacement-city", np.array([1.0, 0.0, 1.0])))
-        < 0.02 * count
-    )
+def test_the_magenta_city_fails_by_every_profile() -> None:
+    """777 of its pixels; undeclared, as the tightest device that explains it is sought."""
+    name = "displacement-city"
+    rows, columns = np.nonzero(hits(name))
+    color = reference(name)["color"].copy()
+    color[rows[:777], columns[:777]] = (1.0, 0.0, 1.0)
+    verdict = examine(case(name), {"color": color}, name_causes=False).verdict
+    assert verdict.outcome is Outcome.FAIL
+    assert verdict.stages[-1].wrong > 0.97 * 777
+    assert not REFEREE.judge_image(case(name), PROFILES["ieee32"], {"color": color}).wrong.sum() < 777
+    assert verdict.profile == LOOSEST, "what the loosest does not explain no tighter one does"
 
 
 def moved_depth(name: str, by: float) -> np.ndarray:
@@ -56,8 +66,10 @@ def moved_depth(name: str, by: float) -> np.ndarray:
     return depth
 
 
-@pytest.mark.parametrize("profile", LOOSE)
-@pytest.mark.parametrize("name", ["displacement-city", "displacement-slope", "displacement-crossing"])
+@pytest.mark.parametrize(
+    ("name", "profile"),
+    [("displacement-city", "gl"), ("displacement-slope", "d3d11"), ("displacement-crossing", "vulkan")],
+)
 def test_a_depth_bias_is_wrong(name: str, profile: str) -> None:
     assert accepted(name, profile, depth=moved_depth(name, 3e-4)) <= 0.005 * hits(name).sum()
 
@@ -88,7 +100,7 @@ def swapped(name: str) -> tuple[Arrays, np.ndarray]:
     return {"color": color, "depth": depth}, np.array([rows, columns])
 
 
-@pytest.mark.parametrize("profile", LOOSE)
+@pytest.mark.parametrize("profile", ["d3d11", "gl"])
 def test_wrong_winners_of_a_depth_test_are_wrong(profile: str) -> None:
     arrays, where = swapped("displacement-crossing")
     assert len(where[0]) >= 45

@@ -48,7 +48,7 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
     for stages in (wrong.stage,), _hidden_in(wrong, handed):
         left = [m for m in MUTANTS if m.stage in stages]
         for number, sample in enumerate((*suspects.samples(), None)):
-            survivors = []
+            survivors: list[Mutant] = []
             for mutant in left:
                 if suspects.rows >= MOST_ROWS:
                     found = tuple(survivors) if sample is None else ()
