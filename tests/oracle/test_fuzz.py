@@ -59,6 +59,18 @@ def test_no_face_at_all(array: str) -> None:
     assert (outcome, words) == (Outcome.FAIL, None)
 
 
+@pytest.mark.parametrize("change", ["one NaN", "NaN", "some infinite", "1e30", "largest float32"])
+@pytest.mark.parametrize("name", ["displacement-tile", "displacement-cut"])
+def test_corners_that_are_no_numbers(name: str, change: str) -> None:
+    handed = handed_of(TINY[name]())
+    handed["vertex.clip"] = replacements("vertex.clip", handed["vertex.clip"])[change](
+        handed["vertex.clip"], np.random.default_rng(0)
+    )
+    outcome, words = complaint(Input(1, name, {"vertex.clip": change}, handed, "ieee32", True))
+    assert words is None
+    assert outcome in (Outcome.FAIL, Outcome.INCONCLUSIVE)
+
+
 def test_inputs_follow_from_their_numbers() -> None:
     for number in (3, 777, 10_003):
         one, again = made(number, 4), made(number, 4)
