@@ -73,9 +73,18 @@ class Method:
 
 
 def _own(
-    name: str, paper: int, title: str, source: str, judged: tuple[str, tuple[str, ...]], inputs: tuple[str, ...] = ()
+    name: str,
+    paper: int,
+    title: str,
+    source: str,
+    judged: tuple[str, tuple[str, ...]],
+    inputs: tuple[str, ...] = (),
+    plain_port: str = "ports",
 ) -> Method:
-    """A method of this package, whose rooms are where those of all its methods are."""
+    """A method of this package, whose rooms are where those of all its methods are.
+
+    plain_port: of the oracle's rooms the one with its port, variants and mutants; "faults" where the port is a program.
+    """
     return Method(
         name=name,
         paper=paper,
@@ -90,7 +99,7 @@ def _own(
         schema=Room(f"ibr_ref.oracle.schema.{name}:SCHEMA"),
         referee=Room(f"ibr_ref.oracle.referees.{name}:{name.capitalize()}Referee"),
         reads=Room(f"ibr_ref.oracle.referees.reads:{name.upper()}"),
-        plain_port=Room(f"ibr_ref.oracle.ports.{name}"),
+        plain_port=Room(f"ibr_ref.oracle.{plain_port}.{name}"),
         sample_port=Room(f"ibr_ref.ports.glsl.{name}:Port"),
         command=Room(f"ibr_ref.cli.{name}"),
         demo=Room(f"ibr_ref.demo.{name}"),
@@ -101,7 +110,7 @@ def _own(
 
 # fmt: off
 _METHODS = {method.name: method for method in (
-    _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", ("protruded",))),
+    _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", ("protruded",)), (), "faults"),
     _own("splatting", 2, "Splatting of depth images", "Lee & Park 2006", ("shape", ("square", "disc")), ("normals",)),
     _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", ("warp", "direct")), ("maps",)),
 )}

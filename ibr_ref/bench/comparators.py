@@ -14,8 +14,8 @@ from importlib.util import find_spec
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case, build, names
-from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.self_test import plain_port, tried
 
 Image = NDArray[np.uint8]

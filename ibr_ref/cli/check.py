@@ -44,7 +44,9 @@ def command(
     ] = None,
     json: Annotated[
         Path | None,
-        typer.Option(help="Also write the verdict as JSON; -: on standard output, the words on standard error."),
+        typer.Option(
+            help="Also write the verdict (--self-test: its tables) as JSON; -: on standard output, the words on standard error."
+        ),
     ] = None,
     report: Annotated[Path | None, typer.Option(help="Also write it as one HTML page, with pictures.")] = None,
     self_test: Annotated[
@@ -56,7 +58,7 @@ def command(
     if self_test:
         from ibr_ref.cli.self_test import run
 
-        raise typer.Exit(run(method))
+        raise typer.Exit(run(method, json))
     if case is None or port is None:
         raise typer.BadParameter("found too few folders, allowed: CASE and PORT, or --self-test")
     examination = _examined(case, port, device, json, report)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json as encoder
 from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
+from ibr_ref.cli import json_output
 from ibr_ref.cli.tables import show
 from ibr_ref.progress import progress
 
@@ -14,21 +18,25 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ibr_ref.oracle.self_test import MutantResult, VariantResult
+    from ibr_ref.oracle.sight import Sight
 
 MUTANT_KINDS = ("easy", "typical", "adversarial")
-"""Cases on which mutants are tried; variants are on all. The real-sized ones would take an hour."""
+"""Cases on which mutants are tried, and sight; variants are on all. The real-sized ones would take an hour."""
 
 
-def run(method: str | None) -> int:
-    """Print both tables and the totals; the exit code: 0 if no variant is accused and no mutant unexpectedly survives."""
+def run(method: str | None, json: Path | None = None) -> int:
+    """Print the tables and the totals; the exit code: 0 if no variant is accused and no mutant unexpectedly survives."""
     from ibr_ref.oracle import self_test
+    from ibr_ref.oracle.sight import sights
     from ibr_ref.scene import checks
 
     if method is not None:
         checks.choice("method", method, self_test.tried())
+    json_output.check_writable(json)
     methods = self_test.tried() if method is None else (method,)
     variants: list[VariantResult] = []
     mutants: list[MutantResult] = []
+    seen: list[Sight] = []
     with progress(self_test.size(methods)) as step:
         for name in methods:
             for variant in self_test.try_variants(name):
@@ -37,13 +45,46 @@ def run(method: str | None) -> int:
             for mutant in self_test.try_mutants(name, kinds=MUTANT_KINDS):
                 step(f"{name}: mutant {mutant.mutant.name}")
                 mutants.append(mutant)
-    show(_variant_table(variants))
-    show(_mutant_table(mutants))
+            seen += sights(name, kinds=MUTANT_KINDS)
+    json_output.write(json, _as_json(variants, mutants, seen))
+    if not json_output.is_standard_output(json):
+        show(_variant_table(variants))
+        show(_mutant_table(mutants))
+        show(_sight_table(seen))
     for name in methods:
-        typer.echo(_totals(name, variants, mutants))
+        typer.echo(_totals(name, variants, mutants), err=json_output.is_standard_output(json))
     accused = any(variant.accused for variant in variants)
     survived = any(mutant.case is None and not mutant.mutant.survives for mutant in mutants)
     return int(accused or survived)
+
+
+def _as_json(variants: Sequence[VariantResult], mutants: Sequence[MutantResult], seen: Sequence[Sight]) -> str:
+    """The numbers of all tables."""
+    broken = [
+        {**{n: v for n, v in vars(m).items() if n != "mutant"}, "name": m.mutant.name, "its_stage": m.mutant.stage}
+        for m in mutants
+    ]
+    tables = {"right": [asdict(v) for v in variants], "broken": broken, "sight": [asdict(s) for s in seen]}
+    return encoder.dumps(tables, indent=2)
+
+
+def _sight_table(results: Sequence[Sight]) -> Table:
+    from rich.table import Table
+
+    columns = ("hits", "colour: picture", "+ depth", "+ stages", "depth: + colour", "+ stages")
+    title = "Sight: % of hit pixels at which a random colour, a depth off by 1e-3, is called right"
+    table = Table("method", "case", "profile", *columns, title=title)
+    for each in results:
+        shares = (
+            each.color_of_picture,
+            each.color_beside_depth,
+            each.color_beside_stages,
+            each.depth_beside_color,
+            each.depth_beside_stages,
+        )
+        percents = [f"{100.0 * share:.2f}" for share in shares]
+        table.add_row(each.method, each.case, each.profile, f"{each.hits:,}", *percents)
+    return table
 
 
 def _variant_table(results: Sequence[VariantResult]) -> Table:

@@ -80,7 +80,7 @@ def _check() -> dict[str, Beside]:
     alone: Others = {"self_test": ABSENT}
     return {
         **{name: Beside("--self-test takes no folders", alone) for name in ("case", "port")},
-        **{name: Beside("--self-test prints its tables alone", alone) for name in ("device", "json", "report")},
-        "self_test": ALWAYS,
+        **{name: Beside("--self-test prints its tables alone", alone) for name in ("device", "report")},
+        **always("json", "self_test"),
         "method": Beside("--method goes with --self-test", {"self_test": GIVEN}),
     }

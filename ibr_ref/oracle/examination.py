@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.conventions import conventions
 from ibr_ref.oracle.device import PROFILES, Device
-from ibr_ref.oracle.judgement import Handed, Judgement, TraceRow
+from ibr_ref.oracle.judgement import Explains, Explanation, Handed, Judgement, TraceRow
 from ibr_ref.oracle.referees import referee
 from ibr_ref.oracle.referees.rows import heading, text
 from ibr_ref.oracle.trials import Trial, judge, tightest
@@ -42,12 +43,15 @@ class Examination:
 
 # A port's numbers may be anything: what overflows or is no number on the way is told as an infinite bound, or as wrong.
 @np.errstate(all="ignore")
-def examine(case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = ()) -> Examination:
+def examine(
+    case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = (), name_causes: bool = True
+) -> Examination:
     """Judge a port's arrays, as `submission_from_arrays` or `load_submission` hands them on.
 
     profile: the device that the port declares; without one, the tightest that explains every element is sought, and a
     port that not even the loosest explains fails by that. problems: what made files of the submission unusable; with any,
-    the verdict is INCONCLUSIVE, because what could not be read may be wrong. Raises ValueError for an unknown profile.
+    the verdict is INCONCLUSIVE, because what could not be read may be wrong. name_causes: whether known bugs that explain
+    a FAIL are looked for, which takes seconds. Raises ValueError for an unknown profile.
     """
     if profile is not None:
         checks.choice("device", profile, list(PROFILES))
@@ -66,8 +70,10 @@ def examine(case: Case, handed: Handed, *, profile: str | None = None, problems:
     }
     image = next((j for j in judgements if j.stage == "image"), None)
     if image is not None:
-        fields["undecided_share"] = float(image.undecided.mean())
-        fields["median_width"] = _median(image)
+        # Of what is drawn: a background is decided anywhere, and its width is none.
+        drawn = image.undecided | (case.frame.depth < 1.0)
+        fields["undecided_share"] = float(image.undecided[drawn].mean()) if drawn.any() else 0.0
+        fields["median_width"] = _median(image.width[drawn])
     wrong = _first_wrong(judgements)
     found: tuple[Bias, ...] = ()
     if image is not None:
@@ -79,6 +85,9 @@ def examine(case: Case, handed: Handed, *, profile: str | None = None, problems:
         )
     if wrong is not None:
         fields["first_wrong_stage"] = wrong.stage
+        explanation = _explanation(case, trial.device, handed, wrong) if name_causes else None
+        if explanation is not None:
+            fields |= {"causes": explanation.causes, "suspects": explanation.given_up_after}
         if image is not None and image.wrong.any():
             fields["conventions"] = conventions(case, trial.device, handed, int(image.wrong.sum()))
     else:
@@ -99,8 +108,8 @@ def _first_wrong(judgements: Sequence[Judgement]) -> Judgement | None:
     return next((j for j in judgements if j.wrong.any()), None)
 
 
-def _median(judgement: Judgement) -> float | None:
-    widths = judgement.width[np.isfinite(judgement.width)]
+def _median(widths: NDArray[np.float64]) -> float | None:
+    widths = widths[np.isfinite(widths)]
     return float(np.median(widths)) if widths.size else None
 
 
@@ -122,7 +131,7 @@ def _summary(case: Case, device: Device, handed: Handed, judgement: Judgement) -
         undecided=int(judgement.undecided.sum()),
         box=box,
         blamed={name: int(count) for name, count in zip(judgement.arrays, counts, strict=False) if count},
-        median_width=_median(judgement),
+        median_width=_median(judgement.width),
         witness=_witness(case, device, handed, judgement) if len(wrong) else None,
     )
 
@@ -157,6 +166,12 @@ def _witness(case: Case, device: Device, handed: Handed, judgement: Judgement) -
             for r in rows
         ),
     )
+
+
+def _explanation(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
+    """Of the methods whose known bugs are programs."""
+    judge_of = referee(case.method)
+    return judge_of.causes(case, device, handed, wrong) if isinstance(judge_of, Explains) else None
 
 
 def _finite(number: float | None) -> float | None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.verdict import Cause
 
 Bools = NDArray[np.bool_]
 Handed = Mapping[str, Any]
@@ -129,3 +130,20 @@ class Referee(Protocol):
 
     def parameters(self, case: Case) -> list[Parameter]:
         """The continuous parameters that move the image."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Explanation:
+    """Which known bugs leave no element of a wrong stage unexplained."""
+
+    causes: tuple[Cause, ...]
+    given_up_after: int | None = None
+    """After how many suspects the search was ended for what it costs; None: all were tried."""
+
+
+@runtime_checkable
+class Explains(Protocol):
+    """A judge that names bugs."""
+
+    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
+        """The known bugs that explain a wrong stage; None: not looked for."""

@@ -10,12 +10,12 @@ import numpy as np
 
 from ibr_ref import methods as registry
 from ibr_ref.oracle.accept.bytes import color_bytes
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.faults.kinds import Mutant, PlainPort, Variant
 from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.faults import Mutant, PlainPort, Variant
 from ibr_ref.oracle.trials import judge
 
 MUTANT_PROFILE = "ieee32"

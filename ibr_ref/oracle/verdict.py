@@ -94,6 +94,14 @@ class Convention(_Record):
     """No pixel is left, or fewer than a tenth."""
 
 
+class Cause(_Record):
+    """A known bug whose program leaves nothing of what was handed in unexplained."""
+
+    name: str
+    says: str
+    """What such a port does, in a sentence."""
+
+
 class Bias(_Record):
     """A parameter whose change would explain the difference."""
 
@@ -125,11 +133,17 @@ class Verdict(_Record):
     verdict is by that profile, else those of the first entry of `stages` that it calls wrong."""
     stages: tuple[StageVerdict, ...] = ()
     first_wrong_stage: str | None = None
+    causes: tuple[Cause, ...] | None = None
+    """Known bugs that explain the stage; several: this case does not tell them apart; none: no known one does. None where
+    none was looked for."""
+    suspects: int | None = None
+    """How many known bugs were tried before the search was ended for what it costs, so that others may explain the stage
+    too; None where all were."""
     conventions: tuple[Convention, ...] = ()
     """Those that were worth a judgement."""
     biases: tuple[Bias, ...] = ()
     undecided_share: float | None = None
-    """Of the picture's pixels."""
+    """Of the picture's pixels that something is drawn at, or may be."""
     median_width: float | None = None
     """Of the picture's accepted colours."""
 

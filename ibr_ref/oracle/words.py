@@ -21,6 +21,7 @@ def words(verdict: Verdict, *, trace: bool = True) -> str:
     for witness in verdict.witnesses:
         lines.append(_witness_line(witness, first=witness is verdict.witness))
         lines += folded(_trace_lines(witness)) if trace else []
+    lines += _causes(verdict)
     for convention in verdict.conventions:
         if convention.explains:
             left = "all of it" if convention.wrong == 0 else f"all but {convention.wrong:,} pixels"
@@ -34,8 +35,23 @@ def words(verdict: Verdict, *, trace: bool = True) -> str:
         width = (
             "" if verdict.median_width is None else f", median width of the accepted colours {verdict.median_width:.2g}"
         )
-        lines.append(f"  Undecided pixels: {100 * verdict.undecided_share:.3f} %{width}.")
+        lines.append(f"  Undecided: {100 * verdict.undecided_share:.3f} % of the hit pixels{width}.")
     return "\n".join(lines)
+
+
+def _causes(verdict: Verdict) -> list[str]:
+    """Which known bugs explain it."""
+    if verdict.causes is None:
+        return []
+    ended = [] if verdict.suspects is None else [f"  Stopped looking for the bug after {verdict.suspects} suspects."]
+    if not verdict.causes:
+        return ended or ["  No known bug explains all of it."]
+    if len(verdict.causes) == 1:
+        (cause,) = verdict.causes
+        alone = "" if ended else ", and by no other"
+        return [f"  Explained by a known bug{alone}: {cause.name}. {cause.says}", *ended]
+    lines = [f"  Explained by {len(verdict.causes)} known bugs, which this case does not tell apart:"]
+    return lines + [f"    {cause.name}: {cause.says}" for cause in verdict.causes] + ended
 
 
 def _headline(verdict: Verdict) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pty
 import re
@@ -81,17 +82,26 @@ def test_a_bench_in_a_pipe(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "a name of some length │ 1000 x 1000 │ 50 │ 123456.7 (123456.7) │ 123456.7 (123456.7) │ 1234.5" in out
 
 
-def test_the_self_test_in_a_pipe(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_self_test_in_a_pipe(run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     from ibr_ref.oracle.self_test import VariantResult
+    from ibr_ref.oracle.sight import Sight
 
     name = "a variant whose name says in very many words what is legal about it, and then some more of them, to the end"
     result = VariantResult(
         method="displacement", name=name, profile="vulkan", cases=43, pixels=10**9, accused=("one: march", "two: shade")
     )
+    shares = {"color_of_picture": 0.0125, "color_beside_depth": 0.01, "color_beside_stages": 0.0}
+    shares |= {"depth_beside_color": 0.02, "depth_beside_stages": 0.0}
+    seen = Sight(method="displacement", case="displacement-one", profile="gl", hits=50, **shares)
     monkeypatch.setattr("ibr_ref.oracle.self_test.try_variants", lambda method: [result])
     monkeypatch.setattr("ibr_ref.oracle.self_test.try_mutants", lambda method, kinds: [])
-    code, out, _ = run("check", "--self-test", "--method", "displacement")
+    monkeypatch.setattr("ibr_ref.oracle.sight.sights", lambda method, kinds: [seen])
+    code, out, _ = run("check", "--self-test", "--method", "displacement", "--json", str(tmp_path / "tables.json"))
     assert code == 1
+    assert "displacement-one │ gl      │ 50   │ 1.25" in out
+    tables = json.loads((tmp_path / "tables.json").read_text("utf-8"))
+    assert tables["right"][0]["accused"] == ["one: march", "two: shade"]
+    assert tables["sight"][0]["depth_beside_stages"] == 0.0
     assert f"{name} │ vulkan  │ 43    │ 1,000,000,000 │" in out
     assert "accused: one: march, two: shade" in out
 

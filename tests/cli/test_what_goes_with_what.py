@@ -137,7 +137,7 @@ CASTER = ("render", "shadows", "--caster", "t.obj", "--out", "a.png")
         (("render", "shadows", "--out", "a.png"), ("--up", "z"), ("--caster",)),
         (("export", "--schema"), ("--list",), ("--schema",)),
         (("export", "--list"), ("--force",), ("--list",)),
-        (("check", "--self-test"), ("--json", "v.json"), ("--self-test",)),
+        (("check", "--self-test"), ("--report", "v.html"), ("--self-test",)),
         (("check", "--self-test"), ("--device", "gl"), ("--self-test",)),
         (("check", "case", "port"), ("--method", "shadows"), ("--self-test",)),
         (("bench", "shadows"), ("--msr", "folder"), ("shadows",)),

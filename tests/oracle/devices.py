@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.ports.arithmetic import Policy
 
 
 def random_policy(random: np.random.Generator, profile: str | None = None) -> tuple[Policy, str]:

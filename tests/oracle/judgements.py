@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.accept.bytes import color_bytes
+from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.ports.faults import Variant
 
 Arrays = dict[str, np.ndarray]
 

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.cases import Case
-from ibr_ref.oracle.ports import displacement, shadows, splatting
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Policy
+from ibr_ref.oracle.faults import displacement
+from ibr_ref.oracle.ports import shadows, splatting
 
 Arrays = dict[str, Any]
 Change = Callable[[Any], Any]

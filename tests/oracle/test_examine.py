@@ -25,13 +25,18 @@ def stages(case: object) -> dict[str, np.ndarray]:
 
 def test_the_reference_passes_by_the_tightest_profile() -> None:
     case = box_case()
-    verdict = examine(case, stages(case)).verdict
+    examination = examine(case, stages(case))
+    verdict = examination.verdict
     assert verdict.outcome is Outcome.PASS
     assert verdict.profile == "ieee32"
     assert verdict.tried == {"ieee32": 0}
     assert not verdict.declared
     assert "PASS: displacement-test" in verdict.words()
-    assert verdict.undecided_share == pytest.approx(2 / 72)
+    image = examination.judgement("image")
+    assert image is not None
+    drawn = image.undecided | (case.frame.depth < 1.0)
+    assert 0 < image.undecided.sum() < drawn.sum() < drawn.size, "of what is drawn, not of the background"
+    assert verdict.undecided_share == pytest.approx(image.undecided.sum() / drawn.sum())
 
 
 def test_a_looser_profile_is_found_and_a_declared_one_is_kept() -> None:

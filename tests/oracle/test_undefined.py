@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats, Policy
 from ibr_ref.oracle.cases import Case, build, names
-from ibr_ref.oracle.ports import displacement, shadows, splatting
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Floats, Policy
+from ibr_ref.oracle.faults import displacement
+from ibr_ref.oracle.ports import shadows, splatting
 from ibr_ref.oracle.undefined import UNDEFINED
 from ibr_ref.scene import Light
 

@@ -31,7 +31,8 @@ def copied(name: str) -> Arrays:
 def checked(name: str, handed: Arrays, profile: str | None = "ieee32") -> Examination:
     case, picture = TINY[name](), {n: handed[n] for n in ("color", "depth") if n in handed}
     stages = {n: a for n, a in handed.items() if n not in picture}
-    return oracle.check(case, oracle.submission_from_arrays(case, stages=stages, **picture), profile=profile)
+    submission = oracle.submission_from_arrays(case, stages=stages, **picture)
+    return oracle.check(case, submission, profile=profile, name_causes=False)
 
 
 def verdict(name: str, handed: Arrays, profile: str | None = "ieee32") -> Verdict:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.faults import Mutant, Variant
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.faults.kinds import Mutant, Variant
 
 
 class Port:

@@ -10,6 +10,7 @@ sum |w'_i| |d_i|. So they differ by at most the gradient of the weights times th
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -84,13 +85,18 @@ def snapped(x: Bounded) -> tuple[Floats, Floats]:
     return reference / RASTER, np.where(x.error > 0.0, off, 0.0) / RASTER
 
 
-def fragments(x: Bounded, y: Bounded, width: int, height: int) -> Fragments:
-    """The pixels that each triangle with corners x, y (T, 3), in window coordinates, may cover. NaN corners: none."""
+def fragments(
+    x: Bounded, y: Bounded, width: int, height: int, owns_border: Callable[[int, int], bool] | None = None
+) -> Fragments:
+    """The pixels that each triangle with corners x, y (T, 3), in window coordinates, may cover. NaN corners: none.
+
+    owns_border: whether the pixels on an edge (dx, dy) that is run through clockwise are covered; the top-left rule.
+    """
     corners = _corners(x, y)
     triangle, rows, columns = _near(corners, width, height)
     px, py = np.asarray(columns + 0.5, np.float64), np.asarray(rows + 0.5, np.float64)
     edges, slack = _edges(corners, triangle, px, py)
-    owned = np.stack([_top_left(corners, *corners.edge(i)) for i in range(3)], axis=1)[triangle]
+    owned = np.stack([_owned(corners, *corners.edge(i), owns_border) for i in range(3)], axis=1)[triangle]
     area = corners.area[triangle]
     reference = (edges > 0.0) | ((edges == 0.0) & owned)
     inside = reference & ((slack < edges) | (slack == 0.0))
@@ -208,7 +214,9 @@ def _weights(corners: Corners, triangle: Ints, edges: Floats) -> tuple[Floats, F
         return weights, np.where(moving, gradient[triangle] * moved, 0.0), np.where(moving, moved, 0.0)
 
 
-def _top_left(corners: Corners, a: int, b: int) -> Bools:
+def _owned(corners: Corners, a: int, b: int, owns_border: Callable[[int, int], bool] | None) -> Bools:
     """(T,) whether pixels on the edge a -> b of a triangle with E > 0 inside (y downwards) belong to it."""
     dx, dy = corners.x[:, b] - corners.x[:, a], corners.y[:, b] - corners.y[:, a]
+    if owns_border is not None:
+        return np.array([owns_border(*way) for way in zip(np.sign(dx), np.sign(dy), strict=True)], np.bool_)
     return np.asarray(((dy == 0.0) & (dx > 0.0)) | (dy < 0.0))

@@ -65,7 +65,7 @@ class Texture:
         column, row = (np.clip(c, -FARTHEST, FARTHEST).astype(np.int64) for c in (x0, y0))
         columns = [self._wrapped(column + j, width) for j in (0, 1)]
         rows = [self._wrapped(row + i, height) * width for i in (0, 1)]
-        return [self._gather(r + c) for r in rows for c in columns], self._spread(x - x0), self._spread(y - y0)
+        return [self._gather(r + c) for r in rows for c in columns], self.spread(x - x0), self.spread(y - y0)
 
     @cached_property
     def _flat(self) -> Floats:
@@ -82,9 +82,10 @@ class Texture:
     def bilinear(self, x: Floats, y: Floats) -> Floats:
         """The reference's fetch at x = u W - 0.5, y = v H - 0.5."""
         (t00, t10, t01, t11), f, g = self.cell(x, y)
-        return _lerp(_lerp(t00, t10, f), _lerp(t01, t11, f), g)
+        return lerp(lerp(t00, t10, f), lerp(t01, t11, f), g)
 
-    def _spread(self, fraction: Any) -> Any:
+    def spread(self, fraction: Any) -> Any:
+        """(n,) for each channel alike."""
         return fraction[..., None] if self.texels.ndim == 3 else fraction
 
 
@@ -97,15 +98,15 @@ def fetch(texture: Texture, u: Bounded, v: Bounded) -> Bounded:
     off_x, off_y = (_finite(c.error + device.weight_step) for c in (x, y))
     at_x, at_y = (np.where(np.isfinite(c.value), c.value, 0.0) for c in (x, y))
     (t00, t10, t01, t11), f, g = texture.cell(at_x, at_y)
-    value = _lerp(_lerp(t00, t10, f), _lerp(t01, t11, f), g)
+    value = lerp(lerp(t00, t10, f), lerp(t01, t11, f), g)
     slope_x = np.maximum(np.abs(t10 - t00), np.abs(t11 - t01))
     slope_y = np.maximum(np.abs(t01 - t00), np.abs(t11 - t10))
-    error = slope_x * texture._spread(off_x) + slope_y * texture._spread(off_y)
+    error = slope_x * texture.spread(off_x) + slope_y * texture.spread(off_y)
     crossing = (np.floor(at_x - off_x) != np.floor(at_x + off_x)) | (np.floor(at_y - off_y) != np.floor(at_y + off_y))
     largest = reduce(np.maximum, [np.abs(t) for t in (t00, t10, t01, t11)])
     if crossing.any():
         largest[crossing] = texture.largest
-        error[crossing] = _spread_around(texture, *(a[crossing] for a in (at_x, at_y, off_x, off_y, value)))
+        error[crossing] = spread_around(texture, *(a[crossing] for a in (at_x, at_y, off_x, off_y, value)))
     rounding = FILTER_ROUNDINGS * device.operation * UNIT * largest
     return Bounded(value, error + rounding, device)
 
@@ -128,7 +129,7 @@ def _finite(error: Floats) -> Floats:
     return np.where(np.isfinite(error), error, FARTHEST)
 
 
-def _spread_around(texture: Texture, x: Floats, y: Floats, off_x: Floats, off_y: Floats, value: Floats) -> Floats:
+def spread_around(texture: Texture, x: Floats, y: Floats, off_x: Floats, off_y: Floats, value: Floats) -> Floats:
     """The largest difference from `value` in the boxes around x, y."""
     at_x, at_y = np.stack(_stations(x, off_x))[:, None], np.stack(_stations(y, off_y))[None]
     found = texture.bilinear(*np.broadcast_arrays(at_x, at_y))
@@ -162,5 +163,6 @@ def texels_near(count: int, u: Bounded, repeat: bool) -> tuple[NDArray[np.int64]
     return np.clip(low, 0, count - 1), np.clip(high, 0, count - 1)
 
 
-def _lerp(a: Floats, b: Floats, f: Floats) -> Floats:
+def lerp(a: Floats, b: Floats, f: Floats) -> Floats:
+    """A (1 - f) + b f."""
     return a * (1.0 - f) + b * f

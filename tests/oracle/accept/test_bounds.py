@@ -11,8 +11,8 @@ from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, lerp, opposite, p
 from ibr_ref.oracle.accept.coverage import Fragments, fragments, snapped
 from ibr_ref.oracle.accept.fetch import Texture, fetch, highest_around
 from ibr_ref.oracle.accept.winners import winners
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.device import GL, IEEE32, PROFILES, VULKAN, Device
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Policy
 from ibr_ref.pipeline.clip import clip_triangles
 from ibr_ref.pipeline.triangles import set_up
 

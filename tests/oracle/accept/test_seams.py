@@ -8,8 +8,8 @@ import pytest
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import fragments
 from ibr_ref.oracle.accept.seams import owners
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.device import IEEE32, VULKAN, Device
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Policy
 from tests.oracle.accept.test_bounds import _inside
 
 SIZE, CELLS = 40, 9

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.oracle.accept.bytes import color_bytes
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.cases.displacement import CASES
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.displacement.port import Port
+from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.oracle.referees.displacement import DisplacementReferee
 
 Arrays = dict[str, Any]

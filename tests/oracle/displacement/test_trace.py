@@ -7,10 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import IEEE32
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.displacement.mutants import MUTANTS
-from tests.oracle.displacement.drawn import REFEREE, SMALL, Arrays, case, draw, reference
+from ibr_ref.oracle.faults.displacement import MUTANTS
+from tests.oracle.displacement.drawn import REFEREE, Arrays, case, draw, reference
+
+TRACED = tuple(f"displacement-{name}" for name in ("extended", "tiles", "street", "crossing", "borders"))
+"""Each way to draw and to search, several polygons."""
 
 
 def arrays_of(mutant: str, name: str) -> Arrays:
@@ -44,7 +47,7 @@ def test_the_reference_differs_nowhere() -> None:
         assert {"colour", "shade.albedo", "shade.normal", "lit"} <= {r.step for r in rows}
 
 
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize("name", TRACED)
 def test_every_stage_can_be_traced_everywhere(name: str) -> None:
     arrays = reference(name)
     height, width = arrays["depth"].shape
@@ -125,6 +128,6 @@ def test_candidates_are_computed_once_a_case_and_device() -> None:
     what = replace(case("displacement-mapped"))
     first = REFEREE.judge_image(what, IEEE32, {"color": what.frame.color})
     assert not first.wrong.any()
-    from ibr_ref.oracle.referees.displacement.image import candidates_of
+    from ibr_ref.oracle.referees.displacement.picture import picture_of
 
-    assert candidates_of(what, IEEE32) is candidates_of(what, IEEE32)
+    assert picture_of(what, IEEE32) is picture_of(what, IEEE32)

@@ -10,9 +10,9 @@ import pytest
 
 from ibr_ref.io import write_image
 from ibr_ref.oracle.accept.bytes import color_bytes
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.files import Submission, load_submission, submission_from_arrays
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Policy
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 

@@ -9,9 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from ibr_ref import displacement
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.displacement import MUTANTS, VARIANTS, Port
-from ibr_ref.oracle.ports.faults import Mutant, Variant
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.faults.displacement import MUTANTS, VARIANTS, Port
+from ibr_ref.oracle.faults.kinds import Mutant, Variant
 from tests.agreement import Arrays, arrays_of
 from tests.oracle.ports.displacement_scenes import SCENES, SHOWN_IN, USUAL, scene_of
 

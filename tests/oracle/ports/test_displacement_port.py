@@ -8,8 +8,8 @@ from hypothesis import assume
 
 from ibr_ref import displacement
 from ibr_ref.displacement import Params, Scene
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.displacement import Port
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.programs.displacement import Port
 from tests import drawn
 from tests.agreement import arrays_of
 from tests.displacement.strategies import REGIONS, Case, cases

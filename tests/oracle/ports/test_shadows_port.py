@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from ibr_ref import shadows
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.faults import Mutant, Variant
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.faults.kinds import Mutant, Variant
 from ibr_ref.oracle.ports.shadows import MUTANTS, VARIANTS, Port
 from tests import drawn
 from tests.oracle.ports.shadows_scenes import CASES, ELSEWHERE, Case, shows

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 
 from ibr_ref import Light, splatting
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.faults import Mutant, Variant
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.faults.kinds import Mutant, Variant
 from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port, raster
 from tests.oracle.ports.splatting_scenes import SCENES
 from tests.splatting import golden_scenes

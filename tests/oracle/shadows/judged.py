@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.shadows import CASES
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.shadows import Port
 from ibr_ref.oracle.referees.shadows import ShadowsReferee
 from tests.oracle.judgements import in_bytes

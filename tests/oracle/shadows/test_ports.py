@@ -8,9 +8,9 @@ from functools import cache
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.faults import Mutant, Variant
+from ibr_ref.oracle.faults.kinds import Mutant, Variant
 from ibr_ref.oracle.ports.shadows import MUTANTS, VARIANTS, Port
 from ibr_ref.oracle.self_test import port_output
 from ibr_ref.oracle.trials import judge

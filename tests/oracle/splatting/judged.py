@@ -6,11 +6,11 @@ from functools import cache
 from typing import Any
 
 from ibr_ref.oracle.accept.bytes import color_bytes
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.splatting import CASES
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.splatting import Port
 from ibr_ref.oracle.referees.splatting import SplattingReferee
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.ports.arithmetic import Policy
 from ibr_ref.oracle.ports.splatting import MUTANTS, Port
 from ibr_ref.oracle.referees.splatting.normals import Codes, surface
 from tests.oracle.judgements import complaints, first_wrong, picture

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.faults import Mutant, Variant
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.faults.kinds import Mutant, Variant
 from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port
 from ibr_ref.oracle.ports.splatting.variants import OwnNormals
 from tests.oracle.devices import random_policy

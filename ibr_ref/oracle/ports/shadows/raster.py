@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Floats
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats
 
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Floats
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats
 from ibr_ref.oracle.ports.shadows.raster import Ints
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ibr_ref.oracle.ports.arithmetic import Floats
+from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.ports.shadows.maps import Maps
 from ibr_ref.oracle.ports.shadows.raster import Flags, Fragments, Ints, Raster
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Floats, Policy
-from ibr_ref.oracle.ports.faults import Variant
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats, Policy
+from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.ports.shadows.port import Port
 from ibr_ref.oracle.ports.shadows.raster import Fragments, Raster
 from ibr_ref.oracle.ports.shadows.surface import Surface

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.ports.arithmetic import Floats
+from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.ports.shadows.lights import Lights
 from ibr_ref.oracle.ports.shadows.raster import Ints
 

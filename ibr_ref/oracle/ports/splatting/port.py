@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Policy
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.ports.splatting.atlas import Atlas
 from ibr_ref.oracle.ports.splatting.normals import Normals
 from ibr_ref.oracle.ports.splatting.raster import Raster

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.ports.arithmetic import Floats
+from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.ports.splatting.atlas import Integers
 from ibr_ref.oracle.ports.splatting.normals import Bools
 from ibr_ref.oracle.ports.splatting.stage import Stage

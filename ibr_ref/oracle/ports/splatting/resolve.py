@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.ports.arithmetic import Floats
+from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.ports.splatting.atlas import Integers
 from ibr_ref.oracle.ports.splatting.normals import Bools
 from ibr_ref.oracle.ports.splatting.stage import Stage

@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.ports.arithmetic import Arithmetic, Floats
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats
 
 Vector = Sequence[Floats]
 """Coordinates, or channels, of many points: an array each."""

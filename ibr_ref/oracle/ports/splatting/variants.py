@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ibr_ref.oracle.ports.arithmetic import Policy
-from ibr_ref.oracle.ports.faults import Variant
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.ports.splatting import orders
 from ibr_ref.oracle.ports.splatting.port import Port, with_stage
 

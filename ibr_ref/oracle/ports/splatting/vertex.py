@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.ports.arithmetic import Floats
+from ibr_ref.oracle.arithmetic.device import Floats
 from ibr_ref.oracle.ports.splatting.atlas import Integers, Pages
 from ibr_ref.oracle.ports.splatting.lighting import Lighting
 from ibr_ref.oracle.ports.splatting.normals import Bools

@@ -7,11 +7,9 @@ from difflib import SequenceMatcher
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import exact
 from ibr_ref.oracle.judgement import Judgement, TraceRow
-from ibr_ref.oracle.referees.displacement.constants import clip_point
+from ibr_ref.oracle.programs.displacement.vertex import QUADS
 from ibr_ref.oracle.referees.displacement.replay import Port
-from ibr_ref.oracle.referees.displacement.vertex import QUADS
 from ibr_ref.oracle.referees.rows import told
 
 FACES = ("base", "u=0", "u=1", "v=0", "v=1", "top")
@@ -64,7 +62,7 @@ def _named(face: Face | None) -> str:
 
 
 def _drawn(port: Port) -> list[Face]:
-    return [(p, int(number)) for p, faces in enumerate(port.candidates.faces) for number in faces.numbers]
+    return [(p, quad.face) for p, quads in enumerate(port.model.quads) for quad in quads]
 
 
 def _compared(port: Port) -> list[tuple[Face | None, Face | None]]:
@@ -88,32 +86,34 @@ def _recognized(port: Port) -> list[Face]:
     names = [name, *port.names("vertex")]
     quads = {n: np.asarray(port.handed[n], np.float64).reshape(-1, 4, port.handed[n].shape[1]) for n in names if n}
     count = len(quads[str(name)])
-    if len(quads.get("vertex.clip", ())) == count:
+    if "vertex.clip" in quads and len(quads["vertex.clip"]) == count:
         found = [_in_clip_space(port, quad) for quad in quads["vertex.clip"]]
         if any(number >= 0 for _, number in found):
             return found
-    patches = quads["vertex.patch"] if len(quads.get("vertex.patch", ())) == count else np.empty((count, 4, 0))
-    return [_in_patch_space(port, quad) for quad in patches]
+    if "vertex.patch" in quads and len(quads["vertex.patch"]) == count:
+        return [_in_patch_space(port, quad) for quad in quads["vertex.patch"]]
+    return [(-1, -1)] * count
 
 
 def _in_clip_space(port: Port, quad: NDArray[np.float64]) -> Face:
-    for polygon, faces in enumerate(port.candidates.faces):
-        for i, number in enumerate(faces.numbers):
-            if _near(faces.clip.value[4 * i : 4 * i + 4], quad):
-                return polygon, int(number)
-    for polygon, constants in enumerate(port.constants):
+    of = port.model.machine.of
+    for polygon, quads in enumerate(port.model.quads):
+        for each in quads:
+            if _near(of(each.clip).value, quad):
+                return polygon, each.face
+    for polygon, patch in enumerate(port.model.patches):
         for number, corners in enumerate(QUADS):
-            clip = clip_point(constants, [exact(corners[:, k], port.device) for k in range(3)])
+            clip = [of(c) for c in port.model.program.projected(patch, list(corners.T))]
             if _near(np.stack([np.broadcast_to(c.value, 4) for c in clip], axis=1), quad):
                 return polygon, number
     return -1, -1
 
 
 def _in_patch_space(port: Port, quad: NDArray[np.float64]) -> Face:
-    for faces in port.candidates.faces:
-        for i, number in enumerate(faces.numbers):
-            if _near(faces.patch.value[4 * i : 4 * i + 4], quad):
-                return -1, int(number)
+    for quads in port.model.quads:
+        for each in quads:
+            if _near(port.model.machine.of(each.patch).value, quad):
+                return -1, each.face
     return -1, next((number for number, corners in enumerate(QUADS) if _near(corners, quad)), -1)
 
 

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.displacement.contract import STAGES
-from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.accept.bytes import allows_color
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees import rows
-from ibr_ref.oracle.referees.displacement.hits import Hits
-from ibr_ref.oracle.referees.displacement.raster import Fragments
+from ibr_ref.oracle.referees.displacement.hits import lighted, shades_of
 from ibr_ref.oracle.referees.displacement.replay import (
     ARRAYS,
     Port,
@@ -23,11 +24,22 @@ from ibr_ref.oracle.referees.displacement.replay import (
     raster_field,
     shade_field,
 )
-from ibr_ref.oracle.referees.displacement.shown import lighted, shades_of
+from ibr_ref.oracle.referees.displacement.rows import Hits, Points
 
 Bools = NDArray[np.bool_]
 Ints = NDArray[np.int64]
 Field = Bounded | Ints | Bools
+
+
+def bounded(field: Any) -> Any:
+    """Numbers and vectors with their bounds, arrays as they are."""
+    if isinstance(field, list):
+        parts = [bounded(x) for x in field]
+        value, error = (np.stack(get, axis=-1) for get in zip(*((p.value, p.error) for p in parts), strict=True))
+        return Bounded(value, error, parts[0].device)
+    if isinstance(field, Number):
+        return Bounded(field.value, np.broadcast_to(field.deviation, field.shape), field.ops.device)
+    return field
 
 
 @dataclass(frozen=True)
@@ -37,50 +49,50 @@ class Element:
     port: Port
     pixel: int
 
-    def raster(self, candidates: Fragments) -> list[TraceRow]:
+    def raster(self, candidates: Points) -> list[TraceRow]:
         """Face, polygon and point."""
-        fields = {name: raster_field(candidates, name) for name in ARRAYS["raster"]}
+        fields = {name: bounded(raster_field(self.port, candidates, name)) for name in ARRAYS["raster"]}
         bare = not candidates.certain.any()
         return self._rows(fields, self._likeliest(fields, ("raster.face", "raster.patch_id")), bare)
 
     def march(self, hits: Hits) -> list[TraceRow]:
         """Indices, hit, height and steepness."""
-        fields = {name: march_field(hits, name) for name in ARRAYS["march"]}
+        fields = {name: bounded(march_field(hits, name)) for name in ARRAYS["march"]}
         likeliest = self._likeliest(fields, ("march.hit_index", "march.steep", "march.linear_index"))
         return self._rows(fields, likeliest, not len(hits))
 
     def shade(self, hits: Hits) -> list[TraceRow]:
         """Albedo, normal and light, and the colour of that."""
-        shades = shades_of(self.port.constants, self.port.case.params, hits)
-        fields = {name: shade_field(shades, name) for name in ARRAYS["shade"]}
-        found = self._rows(fields, self._likeliest(fields, ("shade.lit",)), not len(shades.hit))
+        shades, _ = shades_of(self.port.model, hits)
+        fields = {name: bounded(shade_field(shades, name)) for name in ARRAYS["shade"]}
+        found = self._rows(fields, self._likeliest(fields, ("shade.lit",)), not len(shades))
         surfaces = light_input(self.port, hits, shades)
-        _, color = lighted(self.port.constants, hits, surfaces)
-        return found + self._colors(color)
+        _, color, _ = lighted(self.port.model, hits, surfaces)
+        return found + self._colors(bounded(color))
 
     def resolve(self, hits: Hits) -> list[TraceRow]:
         """Depth, and the background where nothing is kept; the colour has been told with shade."""
         kept = hits.take(hits.kept)
-        one = exact(np.ones(1), self.port.device)
-        depth = kept.depth.widened(self.port.device.depth_step) if len(kept) else one
+        one = exact(np.ones(1), self.port.model.device)
+        depth = bounded(kept.depth) if len(kept) else one
         rows_ = self._rows({"depth": depth}, 0, bare=False)
         return rows_ if len(kept) else [*rows_, *self._colors(self._background)]
 
     def image(self) -> list[TraceRow]:
         """What the reference shows, beside what the port does."""
         frame, at = self.port.case.frame, self._at
-        accepted = self.port.candidates.accepted
-        mine = np.flatnonzero(accepted.pixel == self.pixel)
-        color, depth = accepted.color[mine], accepted.depth[mine]
+        looks = self.port.picture.all
+        looks = looks.take((looks.pixel == self.pixel) & self.port.picture.shown(looks))
+        color, depth, device = bounded(looks.color), bounded(looks.depth), self.port.model.device
         result = []
         if self.port.has("depth"):
             found = float(np.asarray(self.port.handed["depth"])[at])
-            row = rows.number("picture: depth", exact(frame.depth[at], self.port.device), found, array="depth")
+            row = rows.number("picture: depth", exact(frame.depth[at], device), found, array="depth")
             result.append(replace(row, note="" if bool(depth.allows(found).any()) else rows.DIFFERS, bound=None))
         if self.port.has("color"):
             found_color = np.asarray(self.port.handed["color"])[at]
             legal = bool(allows_color(color, found_color).all(axis=1).any())
-            bounds = [exact(c, self.port.device) for c in frame.color[at]]
+            bounds = [exact(c, device) for c in frame.color[at]]
             result.append(replace(rows.color("picture: colour", bounds, found_color, legal), bound=None))
         return result
 
@@ -91,7 +103,8 @@ class Element:
 
     @property
     def _background(self) -> Bounded:
-        return uploaded(np.asarray(self.port.case.scene.background, np.float64)[None], self.port.device)
+        behind: Bounded = bounded([x[None] for x in self.port.model.background])
+        return behind
 
     def _colors(self, color: Bounded) -> list[TraceRow]:
         if not self.port.has("color") or not len(color.value):
@@ -121,7 +134,7 @@ class Element:
             return []
         count = len(_values(fields[names[0]]))
         at = np.full(count, self.pixel)
-        agrees = {name: self.port.agreement(name, at, fields[name]) for name in names}
+        agrees = {name: self._agrees(name, at, fields[name]) for name in names}
         left, chosen = np.ones(count, np.bool_), likeliest
         for name in names:
             if not (left & agrees[name]).any():
@@ -143,6 +156,12 @@ class Element:
     def _nothing_there(self) -> bool:
         """Whether no face covers the pixel in the reference's frame."""
         return bool(self.port.case.frame.stages["raster.face"][self._at] < 0)
+
+    def _agrees(self, name: str, at: Ints, field: Field) -> Bools:
+        if not isinstance(field, Bounded):
+            return self.port.agreement(name, at, field)
+        allowed = field.allows(self.port.floats(name)[at])
+        return allowed if allowed.ndim == 1 else np.asarray(allowed.all(axis=1))
 
     def _row(self, name: str, value: NDArray[np.generic], field: Field, legal: bool) -> TraceRow:
         found = np.asarray(self.port.floats(name)[self.pixel])

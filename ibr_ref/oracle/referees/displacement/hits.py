@@ -1,132 +1,188 @@
-"""Outcomes of fragments of all polygons: where they lie in the window, and what is discarded before the near plane."""
+"""Fragments marched, hits shaded and lit: all legal outcomes of the program's stages, one stage a run."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ibr_ref.displacement import Params
-from ibr_ref.oracle.accept.bounded import Bounded, exact
-from ibr_ref.oracle.referees.displacement.arrays import joined, stacked
-from ibr_ref.oracle.referees.displacement.constants import Constants, Vector, clip_point
-from ibr_ref.oracle.referees.displacement.march import Outcomes, outcomes_of, search_of
-from ibr_ref.oracle.referees.displacement.raster import Fragments
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-
-CHUNK = 1 << 14
-"""Fragments that are followed at a time: their arrays stay in the cache."""
+from ibr_ref.oracle.accept.winners import Winners, winners
+from ibr_ref.oracle.arithmetic.decisions import joined
+from ibr_ref.oracle.arithmetic.number import Ints, Number
+from ibr_ref.oracle.referees.displacement.model import CHUNK, Model
+from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades, Vector, absorbed, taken
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Hits:
-    """(n,) legal outcomes of the march of fragments."""
-
-    pixel: Ints
-    polygon: Ints
-    face: Ints
-    certain: Bools
-    """The fragment is there whatever the device does (see `Fragments`)."""
-    point: Bounded
-    """(n, 3) C."""
-    linear_index: Ints
-    hit_index: Ints
-    hit: Bounded
-    """(n, 3)."""
-    height_before: Bounded
-    steep: Bools
-    depth: Bounded
-    """Window depth; infinite where discarded."""
-
-    def __len__(self) -> int:
-        return len(self.pixel)
-
-    def take(self, index: Ints | Bools | slice) -> Hits:
-        """Some of them."""
-        return Hits(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
-
-    @property
-    def kept(self) -> Bools:
-        """Whether anything was hit."""
-        return self.hit_index >= 0
+def points_of(model: Model) -> Points:
+    """The candidates of the program's own vertices, each anywhere in its box."""
+    return _points(model, model.raster)
 
 
-def hits_of(constants: Sequence[Constants], params: Params, fragments: Fragments) -> tuple[Hits, Ints]:
-    """The legal outcomes of all fragments, and the pixels of those that have too many."""
-    parts, lost = [], []
-    for polygon, each in enumerate(constants):
+def points_from(model: Model, quads: list[list[Any]]) -> Points:
+    """Of other vertices."""
+    return _points(model, model.rasterized(quads))
+
+
+def _points(model: Model, raster: Any) -> Points:
+    fragments, parts = raster.fragments, []
+    for polygon in range(len(model.patches)):
         mine = np.flatnonzero(fragments.polygon == polygon)
+        if not len(mine):
+            continue
+        model.machine.begin(mine)
+        box = np.zeros((len(mine), 2))
+        point, depth = raster.points(mine, np.arange(len(mine)), box, box + 1.0)
+        parts.append(
+            Points(
+                pixel=fragments.pixel[mine],
+                polygon=fragments.polygon[mine],
+                face=fragments.face[mine],
+                certain=fragments.certain[mine],
+                point=absorbed(point),
+                depth=absorbed(depth),
+            )
+        )
+    return Points.joined(parts) if parts else no_points(model)
+
+
+def no_points(model: Model) -> Points:
+    """An empty table."""
+    nothing = np.zeros(0, np.int64)
+    none = Number(model.machine, np.zeros(0))
+    return Points(pixel=nothing, polygon=nothing, face=nothing, certain=nothing > 0, point=[none] * 3, depth=none)
+
+
+def _by_polygon(model: Model, polygon: Ints) -> Iterator[tuple[int, Ints]]:
+    """Rows of each polygon, some thousands at a time."""
+    for number in range(len(model.patches)):
+        mine = np.flatnonzero(polygon == number)
         for first in range(0, len(mine), CHUNK):
-            some = fragments.take(mine[first : first + CHUNK])
-            outcomes, many = outcomes_of(search_of(each, params, [some.point[:, k] for k in range(3)]))
-            parts += _projected(each, params, some, outcomes)
-            lost.append(some.pixel[many])
+            yield number, mine[first : first + CHUNK]
+
+
+def followed(
+    model: Model, rows: Ints, run: Callable[[Ints, Ints], dict[str, Any]]
+) -> tuple[Ints, dict[str, Any], Ints]:
+    """All outcomes of a run of rows and lanes: the row of each, its columns, and the rows that are lost."""
+    with np.errstate(all="ignore"):
+        outcomes, lost = model.machine.follow(lambda origin: run(rows[origin], np.arange(len(origin))), len(rows))
+    columns = {name: absorbed(column) for name, column in outcomes.items() if name != "origin"}
+    return rows[outcomes["origin"]], columns, rows[lost]
+
+
+def _lanes(model: Model, vector: Vector, at: Ints, lane: Ints) -> Vector:
+    return [model.machine.lanes(x[at], lane) for x in vector]
+
+
+def hits_of(model: Model, points: Points) -> tuple[Hits, Ints]:
+    """The legal outcomes of all fragments, and the pixels of those that have too many."""
+    parts, lost = [], [np.zeros(0, np.int64)]
+    for polygon, rows in _by_polygon(model, points.polygon):
+
+        def run(at: Ints, lane: Ints, polygon: int = polygon) -> dict[str, Any]:
+            depth = model.machine.lanes(points.depth[at], lane)
+            march = model.marched(polygon, points.face[at], _lanes(model, points.point, at, lane), depth)
+            return {**march, "depth": model.depths(polygon, march["hit_index"], march["hit"], depth)}
+
+        at, found, many = followed(model, rows, run)
+        lost.append(points.pixel[many])
+        parts.append(
+            Hits(
+                pixel=points.pixel[at],
+                polygon=points.polygon[at],
+                face=points.face[at],
+                certain=points.certain[at],
+                point=taken(points.point, at),
+                **found,
+            )
+        )
+    hits = Hits.joined(parts) if parts else no_hits(model)
+    # Where the eye may lie at the fragment's own height, the ray may lead anywhere.
+    anywhere = hits.kept & ~np.all([np.isfinite(x.value + x.deviation) for x in hits.hit], axis=0)
+    lost.append(hits.pixel[anywhere])
+    return hits.take(~anywhere), np.unique(np.concatenate(lost))
+
+
+def no_hits(model: Model) -> Hits:
+    """An empty table."""
+    points = no_points(model)
+    nothing, none = points.pixel, points.depth
+    return Hits(
+        **{f: getattr(points, f) for f in ("pixel", "polygon", "face", "certain", "point", "depth")},
+        linear_index=nothing,
+        hit_index=nothing,
+        hit=[none] * 3,
+        height_before=none,
+        steep=nothing > 0,
+    )
+
+
+def redepthed(model: Model, hits: Hits) -> Number:
+    """The depths of hits that lie elsewhere than they were found; not of the polygon."""
+    parts, order = [Number(model.machine, np.zeros(0))], [np.zeros(0, np.int64)]
+    for polygon, rows in _by_polygon(model, hits.polygon):
+
+        def run(at: Ints, lane: Ints, polygon: int = polygon) -> dict[str, Any]:
+            face_depth = model.machine.lanes(hits.depth[at], lane)
+            hit = _lanes(model, hits.hit, at, lane)
+            return {"depth": model.depths(polygon, hits.hit_index[at], hit, face_depth)}
+
+        at, found, _ = followed(model, rows, run)
+        parts.append(found["depth"])
+        order.append(at)
+    where = np.concatenate(order)
+    _, first = np.unique(where, return_index=True)
+    depth: Number = joined(parts)
+    return depth[first]
+
+
+def shades_of(model: Model, hits: Hits) -> tuple[Shades, Ints]:
+    """The legal looks of all kept hits, and the pixels of those that have too many."""
+    parts, lost = [], [np.zeros(0, np.int64)]
+    kept = np.flatnonzero(hits.kept)
+    for polygon, some in _by_polygon(model, hits.polygon[kept]):
+
+        def run(at: Ints, lane: Ints, polygon: int = polygon) -> dict[str, Any]:
+            patch, program = model.patches[polygon], model.program
+            hit = _lanes(model, hits.hit, at, lane)
+            wall = hits.steep[at] & (patch.facade is not None)
+            with model.machine.one_place():
+                normal, albedo = program.looks(patch, hit, wall)
+            columns = {"normal": normal, "albedo": albedo}
+            columns = {name: [model.machine.lanes(x, lane) for x in vector] for name, vector in columns.items()}
+            return {**columns, "lit": np.asarray(program.lit(patch, hit))}
+
+        at, found, many = followed(model, kept[some], run)
+        lost.append(hits.pixel[many])
+        parts.append(Shades(pixel=hits.pixel[at], hit=at, **found))
     if not parts:
-        nothing = np.empty(0, np.int64)
-        return no_hits(fragments), nothing
-    return joined_hits(parts), np.unique(np.concatenate(lost))
+        nothing, none = np.zeros(0, np.int64), Number(model.machine, np.zeros(0))
+        return Shades(pixel=nothing, hit=nothing, albedo=[none] * 3, normal=[none] * 3, lit=nothing > 0), nothing
+    return Shades.joined(parts), np.concatenate(lost)
 
 
-def no_hits(fragments: Fragments) -> Hits:
-    """An empty list."""
-    nothing, device = np.empty(0), fragments.point.device
-    scalar, triple = exact(nothing, device), exact(np.empty((0, 3)), device)
-    index, flag = nothing.astype(np.int64), nothing.astype(np.bool_)
-    return Hits(pixel=index, polygon=index, face=index, certain=flag, point=triple, linear_index=index,
-                hit_index=index, hit=triple, height_before=scalar, steep=flag, depth=scalar)  # fmt: skip
+def lighted(model: Model, hits: Hits, shades: Shades) -> tuple[Ints, Vector, Ints]:
+    """Colours of shades, of which shade each is, and the pixels of those that have too many."""
+    index, colors = [np.zeros(0, np.int64)], [[Number(model.machine, np.zeros(0))] * 3]
+    lost = [np.zeros(0, np.int64)]
+    for polygon, rows in _by_polygon(model, hits.polygon[shades.hit]):
+
+        def run(at: Ints, lane: Ints, polygon: int = polygon) -> dict[str, Any]:
+            vectors = [(hits.hit, shades.hit[at]), (shades.albedo, at), (shades.normal, at)]
+            hit, albedo, normal = (_lanes(model, vector, rows, lane) for vector, rows in vectors)
+            color = model.program.colored(model.patches[polygon], hit, albedo, normal, shades.lit[at])
+            return {"color": model.written(color)}
+
+        at, found, many = followed(model, rows, run)
+        lost.append(shades.pixel[many])
+        index.append(at)
+        colors.append(found["color"])
+    return np.concatenate(index), joined(colors), np.concatenate(lost)
 
 
-def _projected(constants: Constants, params: Params, fragments: Fragments, outcomes: Outcomes) -> list[Hits]:
-    """The outcomes with their depths; one before the near plane is discarded, one at it may be."""
-    at, device = outcomes.fragment, constants.device
-    z, depth = window_depth(constants, outcomes.hit)
-    if params.depth == "polygon":
-        depth = fragments.depth[at]
-    hits = Hits(
-        pixel=fragments.pixel[at],
-        polygon=fragments.polygon[at],
-        face=fragments.face[at],
-        certain=fragments.certain[at],
-        point=fragments.point[at],
-        linear_index=outcomes.linear_index,
-        hit_index=outcomes.hit_index,
-        hit=stacked(outcomes.hit),
-        height_before=outcomes.height_before,
-        steep=outcomes.steep,
-        depth=depth,
-    )
-    none = hits.hit_index < 0
-    cut = hits.take(~none & (z.low < 0.0))
-    nowhere = Bounded(np.full(len(cut), np.inf), np.zeros(len(cut)), device)
-    cut = replace(
-        cut,
-        linear_index=np.full(len(cut), -1),
-        hit_index=np.full(len(cut), -1),
-        hit=exact(np.full((len(cut), 3), np.nan), device),
-        height_before=exact(np.zeros(len(cut)), device),
-        steep=np.zeros(len(cut), np.bool_),
-        depth=nowhere,
-    )
-    missed = hits.take(none)
-    missed = replace(missed, depth=exact(np.full(len(missed), np.inf), device))
-    return [hits.take(~none & ~(z.high < 0.0)), missed, cut]
-
-
-def window_depth(constants: Constants, hit: Vector) -> tuple[Bounded, Bounded]:
-    """Clip z and window depth of points in patch space."""
-    _, _, z, w = clip_point(constants, hit)
-    return z, z / w
-
-
-def joined_hits(parts: Sequence[Hits]) -> Hits:
-    """One list."""
-    columns: dict[str, Any] = {}
-    for field in fields(Hits):
-        values = [getattr(p, field.name) for p in parts]
-        columns[field.name] = joined(values) if isinstance(values[0], Bounded) else np.concatenate(values)
-    return Hits(**columns)
+def winners_of(model: Model, hits: Hits) -> Winners:
+    """Which outcomes their pixels may show: the depth test between polygons."""
+    camera = model.case.scene.camera
+    owner = hits.pixel * len(model.patches) + hits.polygon
+    return winners(hits.pixel, hits.certain, hits.depth.low, hits.depth.high, camera.width * camera.height, owner=owner)

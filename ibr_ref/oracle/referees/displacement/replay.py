@@ -1,32 +1,25 @@
 """Replay: each stage fed with the port's own arrays of the stages before, and what it hands on.
 
-What a port did not hand in is the reference's, as far as it agrees with what it did: of all legal outcomes those that the
+What a port did not hand in is the program's, as far as it agrees with what it did: of all legal outcomes those that the
 port's arrays fit stay, with the port's numbers in place of theirs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import Bounded, exact, stored
-from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
+from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed
-from ibr_ref.oracle.referees.displacement.constants import Constants
-from ibr_ref.oracle.referees.displacement.hits import CHUNK, Hits, joined_hits, no_hits, window_depth
-from ibr_ref.oracle.referees.displacement.image import Candidates, candidates_of
-from ibr_ref.oracle.referees.displacement.raster import Fragments, fragments_of
-from ibr_ref.oracle.referees.displacement.shown import Shades
-from ibr_ref.oracle.referees.displacement.vertex import triangles_of
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Floats = NDArray[np.float64]
+from ibr_ref.oracle.programs.displacement.vertex import Quad
+from ibr_ref.oracle.referees.displacement.hits import points_from, points_of, redepthed
+from ibr_ref.oracle.referees.displacement.model import Model
+from ibr_ref.oracle.referees.displacement.picture import Picture, picture_of
+from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades, Vector
 
 ARRAYS = {
     "vertex": ("vertex.patch", "vertex.clip"),
@@ -40,11 +33,17 @@ depth and background."""
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Port:
-    """A port's arrays, one row a pixel, with the case that they answer."""
+    """A port's arrays, one row a pixel, with the program that they are judged by."""
 
-    case: Case
-    device: Device
+    model: Model
     handed: Handed
+    among: Bools | None = None
+    """(pixels,) those that are judged; None: all."""
+
+    @property
+    def case(self) -> Any:
+        """Which it answers."""
+        return self.model.case
 
     @property
     def pixels(self) -> int:
@@ -53,14 +52,19 @@ class Port:
         return int(camera.width * camera.height)
 
     @property
-    def candidates(self) -> Candidates:
-        """What the case alone allows."""
-        return candidates_of(self.case, self.device)
+    def polygons(self) -> int:
+        """Of the scene."""
+        return len(self.model.patches)
 
-    @property
-    def constants(self) -> list[Constants]:
-        """Of each polygon."""
-        return self.candidates.constants
+    @cached_property
+    def picture(self) -> Picture:
+        """What the case alone allows; of the right program it is computed once."""
+        return picture_of(self.case, self.model.device, self.model.kind, self.among)
+
+    @cached_property
+    def own_points(self) -> Points:
+        """The candidates of the program's own vertices."""
+        return points_of(self.model)
 
     def names(self, stage: str) -> tuple[str, ...]:
         """The stage's arrays that were handed in."""
@@ -70,6 +74,13 @@ class Port:
         """Whether all of them were handed in."""
         return all(name in self.handed for name in names)
 
+    @property
+    def whole_hits(self) -> bool:
+        """Whether the port's own hits are all that shading needs."""
+        return self.has("march.hit_index", "march.hit", "march.steep") and (
+            "raster.patch_id" in self.handed or self.polygons == 1
+        )
+
     def floats(self, name: str) -> Floats:
         """(pixels,) or (pixels, 3)."""
         return np.asarray(self._rows(np.asarray(self.handed[name])), np.float64)
@@ -78,206 +89,211 @@ class Port:
         """(pixels,)."""
         return np.asarray(self._rows(np.asarray(self.handed[name])), np.int64)
 
+    def vector(self, name: str, at: Ints) -> Vector:
+        """The port's own numbers at pixels."""
+        return [self.stored(x) for x in self.floats(name)[at].T]
+
+    def stored(self, values: Floats, own: Number | None = None) -> Number:
+        """What was handed in, as the port computed with it: rounded to a float32 at most once where it was stored.
+
+        A port that computes with more digits, or whose compiler keeps more in a register, hands in float32 all the same.
+        own: what the number may be by the port's own inputs; where that is one number, and the port's, nothing was rounded.
+        """
+        rounded = np.isfinite(values)
+        if own is not None:
+            rounded &= (own.deviation != 0.0) | (own.value != values)
+        error = np.where(rounded, self.model.machine.device.operation * UNIT * np.abs(values), 0.0)
+        return Number(self.model.machine, values, error)
+
+    def polygon(self, at: Any = slice(None)) -> Ints:
+        """Of each pixel, by the port's own account; -1 where it names none of the scene's."""
+        written = self.ints("raster.patch_id")[at]
+        result = np.full(len(written), -1)
+        for number, name in enumerate(self.model.patch_number(np.arange(self.polygons))):
+            result[written == name] = number
+        return result
+
     def _rows(self, array: Any) -> Any:
         return array.reshape(self.pixels, *array.shape[2:])
 
-    def agreement(self, name: str, pixel: Ints, legal: Bounded | Ints | Bools) -> Bools:
+    def agreement(self, name: str, pixel: Ints, legal: Any) -> Bools:
         """Whether the port's numbers at pixels are those of an outcome."""
-        if isinstance(legal, Bounded):
-            allowed = legal.allows(self.floats(name)[pixel])
-            return allowed if allowed.ndim == 1 else np.asarray(allowed.all(axis=1))
+        if isinstance(legal, list):
+            found = self.floats(name)[pixel]
+            return np.asarray(np.all([x.allows(found[:, k]) for k, x in enumerate(legal)], axis=0), np.bool_)
+        if isinstance(legal, Number):
+            return legal.allows(self.floats(name)[pixel])
         return np.asarray(self.ints(name)[pixel] == legal, np.bool_)
 
 
-def raster_input(port: Port) -> tuple[Fragments, tuple[str, ...]]:
-    """The candidates of the port's own vertices, where it has as many as the reference."""
-    faces = port.candidates.faces
-    count = sum(len(each.patch.value) for each in faces)
+def raster_input(port: Port) -> tuple[Points, tuple[str, ...]]:
+    """The candidates of the port's own vertices, where it has as many as the program."""
+    quads = port.model.quads
+    count = sum(4 * len(each) for each in quads)
     names = port.names("vertex")
     if not names or any(len(port.handed[name]) != count for name in names):
-        return port.candidates.fragments, ()
-    ends = np.cumsum([len(each.patch.value) for each in faces])[:-1]
-    for name in names:
-        field = name.partition(".")[2]
-        parts = np.split(np.asarray(port.handed[name], np.float64), ends)
-        changed: list[dict[str, Any]] = [
-            {field: stored(part, port.device, getattr(own, field))} for part, own in zip(parts, faces, strict=True)
-        ]
-        faces = [replace(f, **change) for f, change in zip(faces, changed, strict=True)]
-    camera = port.case.scene.camera
+        return port.own_points, ()
+    legal = port.model.vertices
+    clip, patch = (
+        port.stored(np.asarray(port.handed[name], np.float64), legal[name]) if name in names else legal[name]
+        for name in ("vertex.clip", "vertex.patch")
+    )
+    own, first = [], 0
+    for each in quads:
+        row = []
+        for quad in each:
+            rows = slice(first, first + 4)
+            row.append(Quad(quad.face, patch[rows], clip[rows]))
+            first += 4
+        own.append(row)
     with np.errstate(all="ignore"):  # a port's vertices may be anything
-        fragments = fragments_of([triangles_of(each) for each in faces], port.device, camera.width, camera.height)
-    return fragments, names
+        return points_from(port.model, own), names
 
 
-def march_input(port: Port, candidates: Fragments) -> tuple[Fragments, Bools]:
+def march_input(port: Port, candidates: Points) -> tuple[Points, Bools]:
     """The fragments that the port marched from, and the pixels without one."""
     names = port.names("raster")
     if len(names) == len(ARRAYS["raster"]):
-        face, polygon, point = port.ints(names[0]), port.ints(names[1]), port.floats(names[2])
-        usable = (face >= 0) & (face <= 5) & (polygon >= 0) & (polygon < len(port.constants))
+        face, polygon, point = port.ints(names[0]), port.polygon(), port.floats(names[2])
+        usable = (face >= 0) & (face <= 5) & (polygon >= 0)
         pixel = np.flatnonzero(usable & np.isfinite(point).all(axis=1))
-        return Fragments(
+        return Points(
             pixel=pixel,
             polygon=polygon[pixel],
             face=face[pixel],
             certain=np.ones(len(pixel), np.bool_),
-            point=stored(point[pixel], port.device),
-            depth=_face_depth(candidates, pixel, polygon[pixel], face[pixel], port.device),
+            point=port.vector(names[2], pixel),
+            depth=_face_depth(candidates, pixel, polygon[pixel], face[pixel]),
         ), face < 0
     agrees = np.ones(len(candidates), np.bool_)
     for name in names:
-        agrees &= port.agreement(name, candidates.pixel, raster_field(candidates, name))
-    fragments = candidates.take(agrees)
+        agrees &= port.agreement(name, candidates.pixel, raster_field(port, candidates, name))
+    points = candidates.take(agrees)
     if "raster.patch" in names:
-        point = port.floats("raster.patch")[fragments.pixel]
-        fragments = replace(fragments, point=stored(point, port.device, fragments.point))
+        own = port.floats("raster.patch")[points.pixel]
+        points = replace(points, point=[port.stored(own[:, k], x) for k, x in enumerate(points.point)])
     if "raster.face" in names:
-        return fragments, port.ints("raster.face") < 0
-    return fragments, not_covered(candidates, port.pixels)
+        return points, port.ints("raster.face") < 0
+    return points, not_covered(candidates, port.pixels)
 
 
-def _face_depth(candidates: Fragments, pixel: Ints, polygon: Ints, face: Ints, device: Device) -> Bounded:
-    """Window depth of the faces, as the candidates have it; unknown where there is no such candidate."""
+def _face_depth(known: Points | Hits, pixel: Ints, polygon: Ints, face: Ints | None) -> Number:
+    """Window depth of the faces, as the candidates have it; unknown where there is no such candidate.
 
-    def keys(p: Ints, q: Ints, f: Ints) -> Ints:
-        return (p * (int(candidates.polygon.max(initial=0)) + 1) + q) * 6 + f
+    Without a face: of any that the pixel's candidates of that polygon have, all of which lie in one another's bounds.
+    """
+
+    def keys(p: Ints, q: Ints, f: Ints | None) -> Ints:
+        return (p * (int(known.polygon.max(initial=0)) + 1) + q) * 6 + (0 if f is None else f)
 
     value, error = np.zeros(len(pixel)), np.full(len(pixel), np.inf)
-    if len(candidates):
-        known = keys(candidates.pixel, candidates.polygon, candidates.face)
-        order = np.argsort(known, kind="stable")
+    if len(known):
+        have = keys(known.pixel, known.polygon, None if face is None else known.face)
+        order = np.argsort(have, kind="stable")
         wanted = keys(pixel, polygon, face)
-        at = np.minimum(np.searchsorted(known[order], wanted), len(order) - 1)
-        found = known[order][at] == wanted
-        value[found], error[found] = (e[order[at[found]]] for e in (candidates.depth.value, candidates.depth.error))
-    return Bounded(value, error, device)
+        at = np.minimum(np.searchsorted(have[order], wanted), len(order) - 1)
+        found = have[order][at] == wanted
+        rows = order[at[found]]
+        depth = known.depth[rows]
+        value[found], error[found] = depth.value, depth.deviation
+    return Number(known.depth.ops, value, error)
 
 
-def raster_field(fragments: Fragments, name: str) -> Bounded | Ints:
+def raster_field(port: Port, points: Points, name: str) -> Any:
     """What the contract's array holds of the candidates."""
-    fields: dict[str, Bounded | Ints] = {
-        "raster.face": fragments.face,
-        "raster.patch_id": fragments.polygon,
-        "raster.patch": fragments.point,
-    }
-    return fields[name]
+    if name == "raster.patch_id":
+        return port.model.patch_number(points.polygon)
+    return points.face if name == "raster.face" else points.point
 
 
-def not_covered(candidates: Fragments, pixels: int) -> Bools:
+def not_covered(candidates: Points, pixels: int) -> Bools:
     """(pixels,) which may have no fragment at all."""
     result = np.ones(pixels, np.bool_)
     result[candidates.pixel[candidates.certain]] = False
     return result
 
 
-def march_field(hits: Hits, name: str) -> Bounded | Ints | Bools:
-    """What the contract's array holds of the outcomes."""
-    return getattr(hits, name.partition(".")[2])  # type: ignore[no-any-return]
-
-
-def shade_input(port: Port, hits: Hits) -> Hits:
-    """The hits that the port shaded."""
+def shade_input(port: Port, hits: Hits | None) -> Hits:
+    """The hits that the port shaded; the program's outcomes are needed where the port's are not all there."""
     names = port.names("march")
-    if port.has("march.hit_index", "march.hit", "march.steep") and (
-        "raster.patch_id" in port.handed or len(port.constants) == 1
-    ):
-        return _ports_hits(port, hits)
+    if port.whole_hits:
+        return _ports_hits(port)
+    assert hits is not None
     agrees = np.ones(len(hits), np.bool_)
     for name in names:
         agrees &= port.agreement(name, hits.pixel, march_field(hits, name))
     hits = hits.take(agrees & hits.kept)
-    return _at(port, hits, port.floats("march.hit")[hits.pixel]) if "march.hit" in names else hits
+    return _at(port, hits) if "march.hit" in names else hits
 
 
-def _ports_hits(port: Port, hits: Hits) -> Hits:
+def march_field(hits: Hits, name: str) -> Any:
+    """What the contract's array holds of the outcomes."""
+    return getattr(hits, name.partition(".")[2])
+
+
+def _ports_hits(port: Port) -> Hits:
     index, point = port.ints("march.hit_index"), port.floats("march.hit")
     several = "raster.patch_id" in port.handed
-    polygon = port.ints("raster.patch_id") if several else np.zeros(port.pixels, np.int64)
-    usable = (index >= 0) & np.isfinite(point).all(axis=1) & (polygon >= 0) & (polygon < len(port.constants))
-    pixel = np.flatnonzero(usable)
-    depth = np.full(len(pixel), np.nan)
-    if port.case.params.depth == "polygon":
-        known = hits.take(hits.kept)
-        face_depth = _face_depth_of_hits(known, pixel, polygon[pixel], port.device)
-    else:
-        face_depth = Bounded(depth, depth, port.device)
-    count, device = len(pixel), port.device
-    ours = Hits(
-        pixel=pixel,
-        polygon=polygon[pixel],
-        face=np.zeros(count, np.int64),
-        certain=np.ones(count, np.bool_),
-        point=exact(np.zeros((count, 3)), device),
-        linear_index=np.zeros(count, np.int64),
-        hit_index=index[pixel],
-        hit=stored(point[pixel], device),
-        height_before=exact(np.zeros(count), device),
-        steep=port.ints("march.steep")[pixel] != 0,
-        depth=face_depth,
+    polygon = port.polygon() if several else np.zeros(port.pixels, np.int64)
+    usable = (index >= 0) & np.isfinite(point).all(axis=1) & (polygon >= 0)
+    pixel = np.flatnonzero(usable if port.among is None else usable & port.among)
+    count = len(pixel)
+    zero = np.zeros(count, np.int64)
+    none = Number(port.model.machine, np.zeros(count))
+    face_depth = none
+    if not port.model.program.right("window_depth") or port.case.params.depth == "polygon":
+        face_depth = _face_depth(port.own_points, pixel, polygon[pixel], None)
+    return _at(
+        port,
+        Hits(
+            pixel=pixel,
+            polygon=polygon[pixel],
+            face=zero,
+            certain=np.ones(count, np.bool_),
+            point=[none] * 3,
+            linear_index=zero,
+            hit_index=index[pixel],
+            hit=[none] * 3,
+            height_before=none,
+            steep=port.ints("march.steep")[pixel] != 0,
+            depth=face_depth,
+        ),
     )
-    return _at(port, ours, point[pixel])
 
 
-def _face_depth_of_hits(hits: Hits, pixel: Ints, polygon: Ints, device: Device) -> Bounded:
-    """Depths of the faces that were hit: any of them at the pixel, all of which lie in one another's bounds."""
-    value, error = np.zeros(len(pixel)), np.full(len(pixel), np.inf)
-    at = {(p, q): i for i, (p, q) in enumerate(zip(hits.pixel.tolist(), hits.polygon.tolist(), strict=True))}
-    for i, key in enumerate(zip(pixel.tolist(), polygon.tolist(), strict=True)):
-        if key in at:
-            value[i], error[i] = hits.depth.value[at[key]], hits.depth.error[at[key]]
-    return Bounded(value, error, device)
-
-
-def _at(port: Port, hits: Hits, point: Floats) -> Hits:
+def _at(port: Port, hits: Hits) -> Hits:
     """The hits at the port's own points, with the depths that belong to them."""
-    hits = replace(hits, hit=stored(point, port.device))
-    if port.case.params.depth == "polygon":
-        return hits
-    return by_polygon(port, hits, _redepthed)
+    hits = replace(hits, hit=port.vector("march.hit", hits.pixel))
+    return replace(hits, depth=redepthed(port.model, hits)) if len(hits) else hits
 
 
-def _redepthed(constants: Constants, hits: Hits) -> Hits:
-    _, depth = window_depth(constants, [hits.hit[:, k] for k in range(3)])
-    return replace(hits, depth=depth)
-
-
-def by_polygon(port: Port, hits: Hits, change: Callable[[Constants, Hits], Hits]) -> Hits:
-    """Hits changed with the constants of their polygons, some thousands at a time."""
-    parts = []
-    for polygon, each in enumerate(port.constants):
-        mine = np.flatnonzero(hits.polygon == polygon)
-        parts += [change(each, hits.take(mine[i : i + CHUNK])) for i in range(0, len(mine), CHUNK)]
-    return joined_hits(parts) if parts else no_hits(port.candidates.fragments)
-
-
-def shade_field(shades: Shades, name: str) -> Bounded | Bools:
-    """What the contract's array holds of the shades."""
-    return getattr(shades, name.partition(".")[2])  # type: ignore[no-any-return]
-
-
-def light_input(port: Port, hits: Hits, shades: Shades) -> Shades:
-    """The surfaces that the port lit."""
+def light_input(port: Port, hits: Hits, shades: Shades | None) -> Shades:
+    """The surfaces that the port lit; the program's looks are needed where the port's are not all there."""
     names = port.names("shade")
     if len(names) == len(ARRAYS["shade"]):
         albedo, normal = port.floats("shade.albedo"), port.floats("shade.normal")
         usable = np.isfinite(albedo[hits.pixel]).all(axis=1) & np.isfinite(normal[hits.pixel]).all(axis=1)
-        index = np.flatnonzero(usable)
+        index = np.flatnonzero(usable & hits.kept)
         pixel = hits.pixel[index]
         return Shades(
+            pixel=pixel,
             hit=index,
-            albedo=stored(albedo[pixel], port.device),
-            normal=stored(normal[pixel], port.device),
+            albedo=port.vector("shade.albedo", pixel),
+            normal=port.vector("shade.normal", pixel),
             lit=port.ints("shade.lit")[pixel] != 0,
         )
-    pixel = hits.pixel[shades.hit]
-    agrees = np.ones(len(pixel), np.bool_)
+    assert shades is not None
+    agrees = np.ones(len(shades), np.bool_)
     for name in names:
-        agrees &= port.agreement(name, pixel, shade_field(shades, name))
+        agrees &= port.agreement(name, shades.pixel, shade_field(shades, name))
     shades = shades.take(agrees)
     for field in ("albedo", "normal"):
         if f"shade.{field}" in names:
-            numbers = port.floats(f"shade.{field}")[hits.pixel[shades.hit]]
-            change: dict[str, Any] = {field: stored(numbers, port.device)}
+            change: dict[str, Any] = {field: port.vector(f"shade.{field}", shades.pixel)}
             shades = replace(shades, **change)
     return shades
+
+
+def shade_field(shades: Shades, name: str) -> Any:
+    """What the contract's array holds of the shades."""
+    return getattr(shades, name.partition(".")[2])

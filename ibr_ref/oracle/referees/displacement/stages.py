@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ibr_ref.displacement.contract import STAGES
-from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
+from ibr_ref.displacement.contract import STAGES as CONTRACT
+from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.bytes import allows_color
-from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.referees.displacement.arrays import joined
+from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
+from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.displacement.drawn_faces import judge_faces, other_faces
-from ibr_ref.oracle.referees.displacement.hits import Hits, hits_of
-from ibr_ref.oracle.referees.displacement.image import judged
-from ibr_ref.oracle.referees.displacement.raster import Fragments
+from ibr_ref.oracle.referees.displacement.hits import hits_of, lighted, shades_of
 from ibr_ref.oracle.referees.displacement.replay import (
+    ARRAYS,
     Port,
     light_input,
     march_field,
@@ -30,10 +28,7 @@ from ibr_ref.oracle.referees.displacement.replay import (
     shade_field,
     shade_input,
 )
-from ibr_ref.oracle.referees.displacement.shown import Shades, lighted, shades_of
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -43,85 +38,172 @@ class Verdict:
     arrays: tuple[str, ...]
     wrong: Bools
     undecided: Bools
-    width: NDArray[np.float64]
-    blame: NDArray[np.int8]
+    width: Floats
+    blame: Any
 
 
-def judgements(case: Case, device: Device, handed: Handed) -> Iterator[Judgement]:
-    """In pipeline order, each computed when it is asked for."""
-    port = Port(case=case, device=device, handed=handed)
-    before_shade: list[Judgement] = []
-    if port.names("vertex"):
-        before_shade.append(_vertex(port))
-        yield before_shade[-1]
-    candidates, replayed = raster_input(port)
-    if port.names("raster"):
-        before_shade.append(_picture(port, "raster", replayed, _raster(port, candidates)))
-        yield before_shade[-1]
-    fragments, bare = march_input(port, candidates)
-    hits, lost = hits_of(port.constants, case.params, fragments)
-    if port.names("march"):
-        verdict = _march(port, hits, bare, fragments, lost)
-        before_shade.append(_picture(port, "march", port.names("raster"), verdict))
-        yield before_shade[-1]
-    hits = shade_input(port, hits)
-    shades = shades_of(port.constants, case.params, hits)
-    surfaces = light_input(port, hits, shades)
-    shown, color = lighted(port.constants, hits, surfaces)
-    if port.names("shade"):
-        verdict = _shade(port, hits, shades, hits.pixel[surfaces.hit[shown]], color, lost)
-        yield _picture(port, "shade", port.names("march"), verdict)
-    if port.has("color") or port.has("depth"):
-        clean = not any(judgement.wrong.any() for judgement in before_shade)
-        verdict = _resolve(port, hits, surfaces.hit[shown], color, clean, lost)
-        yield _picture(port, "resolve", port.names("march") + port.names("shade"), verdict)
+STAGES = ("vertex", "raster", "march", "shade", "resolve")
+
+
+class Stages:
+    """A port's stages, each computed when it is asked for; of the pixels `among` alone where the port says so."""
+
+    def __init__(self, port: Port) -> None:
+        self.port, self.model = port, port.model
+
+    def take_fragments(self, other: Stages) -> None:
+        """Those of a program that draws the same faces."""
+        self._raster = other._raster
+
+    def judgements(self) -> Iterator[Judgement]:
+        """Of what was handed in, in pipeline order."""
+        clean = True
+        for stage in STAGES:
+            if self.names(stage):
+                judgement = self.judge(stage, clean=clean)
+                clean &= stage == "shade" or not judgement.wrong.any()
+                yield judgement
+
+    def names(self, stage: str) -> tuple[str, ...]:
+        """What of a stage was handed in."""
+        if stage == "resolve":
+            return tuple(name for name in ("depth", "color") if name in self.port.handed)
+        return self.port.names(stage)
+
+    def judge(self, stage: str, *, clean: bool) -> Judgement:
+        """One stage. clean: the geometry before it is right, so that the program's other fragments are the port's."""
+        port = self.port
+        if stage == "vertex":
+            return _vertex(port)
+        if stage == "raster":
+            return _picture(port, stage, self._raster[1], _raster(port, self._raster[0]))
+        if stage == "march":
+            points, bare = self._points
+            hits, lost = self._marched
+            return _picture(port, stage, port.names("raster"), _march(port, hits, bare, points, lost))
+        shown, color, lost = self._lit
+        surfaces = self._surfaces
+        if self._marches:
+            lost = np.concatenate([lost, self._marched[1]])
+        if not self._whole_shades or stage == "shade":
+            lost = np.concatenate([lost, self._shades[1]])
+        if stage == "shade":
+            pixel = surfaces.pixel[shown]
+            return _picture(
+                port, stage, port.names("march"), _shade(port, self._hits, self._shades[0], pixel, color, lost)
+            )
+        verdict = _resolve(port, self._hits, surfaces.hit[shown], color, clean, lost)
+        return _picture(port, stage, port.names("march") + port.names("shade"), verdict)
+
+    @cached_property
+    def _raster(self) -> tuple[Points, tuple[str, ...]]:
+        return raster_input(self.port)
+
+    @cached_property
+    def _points(self) -> tuple[Points, Bools]:
+        points, bare = march_input(self.port, self._raster[0])
+        if self.port.among is not None:
+            points = points.take(self.port.among[points.pixel])
+        return points, bare
+
+    @cached_property
+    def _marched(self) -> tuple[Hits, Ints]:
+        return hits_of(self.model, self._points[0])
+
+    @property
+    def _marches(self) -> bool:
+        """Whether anything hangs on the program's own march."""
+        return (bool(self.port.names("march")) and self.port.among is None) or not self.port.whole_hits
+
+    @cached_property
+    def _hits(self) -> Hits:
+        hits = shade_input(self.port, None if self.port.whole_hits else self._marched[0])
+        return hits if self.port.among is None else hits.take(self.port.among[hits.pixel])
+
+    @cached_property
+    def _shades(self) -> tuple[Shades, Ints]:
+        return shades_of(self.model, self._hits)
+
+    @property
+    def _whole_shades(self) -> bool:
+        """Whether the port's own surfaces are all that lighting needs."""
+        return len(self.port.names("shade")) == len(ARRAYS["shade"])
+
+    @cached_property
+    def _surfaces(self) -> Shades:
+        return light_input(self.port, self._hits, None if self._whole_shades else self._shades[0])
+
+    @cached_property
+    def _lit(self) -> tuple[Ints, list[Number], Ints]:
+        return lighted(self.model, self._hits, self._surfaces)
 
 
 def _picture(port: Port, stage: str, replayed: tuple[str, ...], verdict: Verdict) -> Judgement:
     camera = port.case.scene.camera
     shape = (camera.height, camera.width)
+    wrong = verdict.wrong if port.among is None else verdict.wrong & port.among
     return Judgement(
         stage=stage,
         element="pixel",
         arrays=verdict.arrays,
         replayed=replayed,
-        wrong=verdict.wrong.reshape(shape),
+        wrong=wrong.reshape(shape),
         undecided=verdict.undecided.reshape(shape),
         width=verdict.width.reshape(shape),
-        blame=np.where(verdict.wrong, verdict.blame, -1).astype(np.int8).reshape(shape),
+        blame=np.where(wrong, verdict.blame, -1).astype(np.int8).reshape(shape),
     )
 
 
 def _vertex(port: Port) -> Judgement:
     if other_faces(port):
         return judge_faces(port)
-    faces = port.candidates.faces
-    legal = {"vertex.clip": joined([f.clip for f in faces]), "vertex.patch": joined([f.patch for f in faces])}
-    names = port.names("vertex")
-    count = len(legal["vertex.clip"].value)
+    legal, names = port.model.vertices, port.names("vertex")
+    count = len(legal["vertex.clip"])
     wrong, blame = np.zeros(count, np.bool_), np.full(count, -1, np.int8)
     for i, name in enumerate(names):
         found = np.asarray(port.handed[name], np.float64)
         off = ~legal[name].allows(found).all(axis=1)
         blame[off & ~wrong] = i
         wrong |= off
-    width = 2.0 * np.max([np.broadcast_to(b.error, b.value.shape).max(axis=1) for b in legal.values()], axis=0)
+    widths = [2.0 * np.broadcast_to(x.deviation, x.shape).max(axis=1) for x in legal.values()]
     nowhere = np.zeros(count, np.bool_)
     return Judgement(
-        stage="vertex", element="vertex", arrays=names, wrong=wrong, undecided=nowhere, width=width, blame=blame
+        stage="vertex",
+        element="vertex",
+        arrays=names,
+        wrong=wrong,
+        undecided=nowhere,
+        width=np.max(widths, axis=0),
+        blame=blame,
     )
 
 
-def _judged(
-    port: Port, names: Sequence[str], pixel: Ints, fields: Sequence[Bounded | Ints | Bools], bare: Ints
-) -> tuple[Bools, NDArray[np.int8]]:
+def judged(element: Ints, agrees: list[Bools], count: int) -> tuple[Bools, Any]:
+    """Whether any outcome agrees with all arrays, and the first array that no outcome agrees with.
+
+    Where each array agrees with some outcome, but none with all, the first one that breaks the agreement is blamed.
+    """
+    blame = np.full(count, -1, np.int8)
+    together = np.ones(len(element), np.bool_)
+    right = np.ones(count, np.bool_)
+    for name, each in enumerate(agrees):
+        together = together & each
+        right = np.zeros(count, np.bool_)
+        right[element[together]] = True
+        blame[~right & (blame < 0)] = name
+    return right, blame
+
+
+def _judged(port: Port, names: Sequence[str], pixel: Ints, fields: Sequence[Any], bare: Ints) -> tuple[Bools, Any]:
     """Outcomes at `pixel` with these fields, and besides nothing at the pixels `bare`."""
-    agrees = []
+    agrees, machine = [], port.model.machine
     for name, field in zip(names, fields, strict=True):
-        nothing = STAGES[name].blank
-        if isinstance(field, Bounded):
-            shape = (len(bare), *field.value.shape[1:])
-            none: Bounded | Ints = exact(np.full(shape, nothing), port.device)
+        nothing = float(CONTRACT[name].blank)
+        none: Any = np.full(len(bare), nothing)
+        if isinstance(field, list):
+            none = [Number(machine, none)] * len(field)
+        elif isinstance(field, Number):
+            none = Number(machine, none)
         else:
             none = np.full(len(bare), int(nothing))
         agrees.append(np.concatenate([port.agreement(name, pixel, field), port.agreement(name, bare, none)]))
@@ -129,14 +211,24 @@ def _judged(
     return ~right, blame
 
 
-def _width(pixels: int, pixel: Ints, fields: Sequence[Bounded | Ints | Bools]) -> NDArray[np.float64]:
+def _width(pixels: int, pixel: Ints, fields: Sequence[Any]) -> Floats:
     """(pixels,) of the widest of the continuous results; NaN where there is none."""
     result = np.full(pixels, -np.inf)
     for field in fields:
-        if isinstance(field, Bounded) and len(pixel):
-            error = np.broadcast_to(field.error, field.value.shape)
-            np.maximum.at(result, pixel, 2.0 * (error if error.ndim == 1 else error.max(axis=1)))
+        for x in field if isinstance(field, list) else [field]:
+            if isinstance(x, Number) and len(pixel):
+                np.maximum.at(result, pixel, np.where(np.isnan(x.value), -np.inf, 2.0 * x.deviation))
     return np.where(np.isfinite(result), result, np.nan)
+
+
+def _boundless(pixels: int, pixel: Ints, fields: Sequence[Any]) -> Bools:
+    """(pixels,) where a result may be anything: that says nothing, and counts as undecided."""
+    result = np.zeros(pixels, np.bool_)
+    for field in fields:
+        for x in field if isinstance(field, list) else [field]:
+            if isinstance(x, Number):
+                result[pixel[np.isinf(x.deviation) & ~np.isnan(x.value)]] = True
+    return result
 
 
 def _several(pixels: int, pixel: Ints) -> Bools:
@@ -144,9 +236,9 @@ def _several(pixels: int, pixel: Ints) -> Bools:
     return np.asarray(np.bincount(pixel, minlength=pixels) > 1, np.bool_)
 
 
-def _raster(port: Port, candidates: Fragments) -> Verdict:
+def _raster(port: Port, candidates: Points) -> Verdict:
     names = port.names("raster")
-    fields = [raster_field(candidates, name) for name in names]
+    fields = [raster_field(port, candidates, name) for name in names]
     open_ = not_covered(candidates, port.pixels)
     wrong, blame = _judged(port, names, candidates.pixel, fields, np.flatnonzero(open_))
     perhaps = np.zeros(port.pixels, np.bool_)
@@ -154,40 +246,47 @@ def _raster(port: Port, candidates: Fragments) -> Verdict:
     return Verdict(
         arrays=names,
         wrong=wrong,
-        undecided=perhaps & open_,
+        undecided=(perhaps & open_) | _boundless(port.pixels, candidates.pixel, fields),
         width=_width(port.pixels, candidates.pixel, fields),
         blame=blame,
     )
 
 
-def _march(port: Port, hits: Hits, bare: Bools, fragments: Fragments, lost: Ints) -> Verdict:
+def _march(port: Port, hits: Hits, bare: Bools, points: Points, lost: Ints) -> Verdict:
     names = port.names("march")
     fields = [march_field(hits, name) for name in names]
     wrong, blame = _judged(port, names, hits.pixel, fields, np.flatnonzero(bare))
     known = bare.copy()
-    known[fragments.pixel] = True
+    known[points.pixel] = True
     least, most = np.full(port.pixels, np.inf), np.full(port.pixels, -np.inf)
     np.minimum.at(least, hits.pixel, hits.hit_index.astype(np.float64))
     np.maximum.at(most, hits.pixel, hits.hit_index.astype(np.float64))
     undecided = most - least > 1
+    undecided |= _boundless(port.pixels, hits.pixel, fields)
     wrong[lost], undecided[lost] = False, True
     width = _width(port.pixels, hits.pixel, fields)
     return Verdict(arrays=names, wrong=wrong & known, undecided=undecided, width=width, blame=blame)
 
 
-def _shade(port: Port, hits: Hits, shades: Shades, lit_pixel: Ints, color: Bounded, lost: Ints) -> Verdict:
+def _agree(color: list[Number], found: Any, at: Any = slice(None)) -> Bools:
+    """Whether colours are legal."""
+    some = [x[at] for x in color]
+    value = np.stack([x.value for x in some], axis=-1)
+    error = np.stack([np.broadcast_to(x.deviation, x.shape) for x in some], axis=-1)
+    return np.asarray(allows_color(Bounded(value, error, color[0].ops.device), found).all(axis=1), np.bool_)
+
+
+def _shade(port: Port, hits: Hits, shades: Shades, lit_pixel: Ints, color: list[Number], lost: Ints) -> Verdict:
     names = port.names("shade")
-    pixel = hits.pixel[shades.hit]
     fields = [shade_field(shades, name) for name in names]
     discarded = _discarded(port, hits)
-    wrong, blame = _judged(port, names, pixel, fields, np.flatnonzero(discarded))
+    wrong, blame = _judged(port, names, shades.pixel, fields, np.flatnonzero(discarded))
     judged_here = discarded.copy()
     judged_here[hits.pixel] = True
     wrong &= judged_here
     if "color" in port.handed:
-        found = np.asarray(port.handed["color"]).reshape(port.pixels, 3)
-        agrees = np.asarray(allows_color(color, found[lit_pixel]).all(axis=1))
-        bright, _ = judged(lit_pixel, [agrees], port.pixels)
+        found = port.model.program.rows(np.asarray(port.handed["color"])).reshape(port.pixels, 3)
+        bright, _ = judged(lit_pixel, [_agree(color, found[lit_pixel])], port.pixels)
         unseen = np.ones(port.pixels, np.bool_)
         unseen[lit_pixel] = False
         unseen[hits.pixel[hits.depth.high >= 1.0]] = True
@@ -195,62 +294,69 @@ def _shade(port: Port, hits: Hits, shades: Shades, lit_pixel: Ints, color: Bound
         blame[dark & ~wrong] = len(names)
         wrong = wrong | dark
         names = (*names, "color")
-    wrong[lost] = False
+    undecided = _several(port.pixels, shades.pixel) | _boundless(port.pixels, shades.pixel, fields)
+    undecided |= _boundless(port.pixels, lit_pixel, [color])
+    wrong[lost], undecided[lost] = False, True
     return Verdict(
         arrays=names,
         wrong=wrong,
-        undecided=_several(port.pixels, pixel),
-        width=_width(port.pixels, pixel, fields),
+        undecided=undecided,
+        width=_width(port.pixels, shades.pixel, fields),
         blame=blame,
     )
 
 
 def _discarded(port: Port, hits: Hits) -> Bools:
-    """(pixels,) that have no hit by the port's own account, or by the reference's where it gave none."""
+    """(pixels,) that have no hit by the port's own account, or by the program's where it gave none."""
     if "march.hit_index" in port.handed:
         return port.ints("march.hit_index") < 0
     result = np.ones(port.pixels, np.bool_)
     result[hits.pixel] = False
-    return result | port.candidates.empty
+    return result | port.picture.winners.empty
 
 
-def _resolve(port: Port, hits: Hits, lit: Ints, color: Bounded, clean: bool, lost: Ints) -> Verdict:
+def _resolve(port: Port, hits: Hits, lit: Ints, color: list[Number], clean: bool, lost: Ints) -> Verdict:
     """Depth, what is shown where polygons hide one another, and the background.
 
-    Which polygon wins hangs on fragments that the port did not hand in. They are the reference's only where the port's own
+    Which polygon wins hangs on fragments that the port did not hand in. They are the program's only where the port's own
     stages are right: `clean`. The colours of what is shown were judged with shade; they count here where it was not.
     """
     names = tuple(name for name in ("depth", "color") if name in port.handed)
     nothing = _discarded(port, hits)
     nothing[hits.pixel[hits.depth.high >= 1.0]] = True
-    bare = np.flatnonzero(nothing & port.candidates.empty if clean else nothing)
+    bare = np.flatnonzero(nothing & port.picture.winners.empty if clean else nothing)
     may_win = hits.depth.low < 1.0
     if clean:
         may_win &= _may_win(port, hits)
-    entry = lit[may_win[lit]] if "color" in names and not port.names("shade") else np.flatnonzero(may_win)
+    colors_too = "color" in names and not port.names("shade")
+    row = np.flatnonzero(may_win[lit])
+    entry = lit[row] if colors_too else np.flatnonzero(may_win)
     pixel = np.concatenate([hits.pixel[entry], bare])
     agrees = []
     if "depth" in names:
-        depth = joined([hits.depth[entry], exact(np.ones(len(bare)), port.device)]).widened(port.device.depth_step)
+        shown, one = hits.depth[entry], np.ones(len(bare))
+        error = np.concatenate([shown.deviation + 0.0 * shown.value, 0.0 * one + port.model.device.depth_step])
+        depth = Number(port.model.machine, np.concatenate([shown.value, one]), error)
         agrees.append(port.agreement("depth", pixel, depth))
     if "color" in names:
-        found = np.asarray(port.handed["color"]).reshape(port.pixels, 3)
-        background = uploaded(np.broadcast_to(np.asarray(port.case.scene.background), (len(bare), 3)), port.device)
-        judged_before: Bools = np.ones(len(entry), np.bool_)
-        if not port.names("shade"):
-            judged_before = np.asarray(allows_color(color[may_win[lit]], found[hits.pixel[entry]]).all(axis=1))
-        agrees.append(np.concatenate([judged_before, allows_color(background, found[bare]).all(axis=1)]))
+        found = port.model.program.rows(np.asarray(port.handed["color"])).reshape(port.pixels, 3)
+        behind = [port.model.machine.lanes(x, bare) for x in port.model.background]
+        before: Bools = np.ones(len(entry), np.bool_)
+        if colors_too:
+            before = _agree(color, found[hits.pixel[entry]], row)
+        agrees.append(np.concatenate([before, _agree(behind, found[bare])]))
     right, blame = judged(pixel, agrees, port.pixels)
     known = np.zeros(port.pixels, np.bool_)
     known[hits.pixel] = True
     known |= nothing
     wrong = ~right & known
-    wrong[lost] = False
-    wrong[port.candidates.lost] = False
+    undecided = _several(port.pixels, pixel) | _boundless(port.pixels, hits.pixel[hits.kept], [hits.depth[hits.kept]])
+    for many in (lost, port.picture.fragments.pixel[port.picture.lost]):
+        wrong[many], undecided[many] = False, True
     return Verdict(
         arrays=names,
         wrong=wrong,
-        undecided=_several(port.pixels, pixel),
+        undecided=undecided,
         width=_width(port.pixels, hits.pixel, [hits.depth]),
         blame=blame,
     )
@@ -258,6 +364,7 @@ def _resolve(port: Port, hits: Hits, lit: Ints, color: Bounded, clean: bool, los
 
 def _may_win(port: Port, hits: Hits) -> Bools:
     """Which hits are of a polygon that the depth test may leave at its pixel."""
-    found, count = port.candidates, len(port.constants)
-    winners = found.hits.take(found.possible & found.hits.kept)
-    return np.isin(hits.pixel * count + hits.polygon, np.unique(winners.pixel * count + winners.polygon))
+    picture, count = port.picture, port.polygons
+    possible = picture.possible & (picture.all.hit_index >= 0)
+    looks = picture.all
+    return np.isin(hits.pixel * count + hits.polygon, np.unique((looks.pixel * count + looks.polygon)[possible]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ibr_ref.oracle.ports.faults import Mutant
+from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.ports.shadows.port import Port
 
 BELOW_A_BYTE = "the picture changes by less than half a step of 8 bits: a PNG hardly shows it"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from ibr_ref.oracle.ports.faults import Mutant
+from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.ports.splatting.port import replaced_stage, with_stage
 from ibr_ref.oracle.ports.splatting.stage import Stage
 

@@ -1,0 +1,113 @@
+"""Decisions that may go either way: a lane takes one outcome where it is needed, and a fork of it runs the program again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ibr_ref.oracle.arithmetic.number import Bools, Ints, Number, Truth, slope
+
+MOST_DECISIONS = 48
+"""Open decisions on one path of the program; beyond, the lane is lost."""
+MOST_PATHS = 64
+"""Paths of one lane; beyond, it is lost: whatever a port makes of it is accepted, and it counts as undecided."""
+
+Outcomes = dict[str, Any]
+"""Results, a row for each path of each lane, with "origin", the lane's number."""
+
+
+class Decisions:
+    """The outcomes of a program's decisions on many lanes, and what is left to be run again."""
+
+    def __init__(self) -> None:
+        self.names: dict[str, int] = {}
+        self.rows = 0  # that have been run, forks and all
+        self.begin(np.zeros(1, np.int64))
+
+    @staticmethod
+    def lane(*operands: Any) -> Any:
+        """The lanes that operands share."""
+        return next((x.lane for x in operands if x.lane is not None), None)
+
+    @staticmethod
+    def pairs(a: Number, b: Number) -> list[tuple[str, Any, Any]]:
+        """Slopes of two numbers along each symbol that either has."""
+        if not b.slopes:
+            return [(k, s, 0.0) for k, s in a.slopes.items()]
+        return [(k, a.slopes.get(k, 0.0), b.slopes.get(k, 0.0)) for k in {**a.slopes, **b.slopes}]
+
+    def begin(self, origin: Ints, taken: Any = None, known: Any = None) -> None:
+        """Start the program on lanes; `known` outcomes of each are given."""
+        count = len(origin)
+        self.origin = origin
+        self.taken = np.zeros((count, MOST_DECISIONS), np.bool_) if taken is None else taken
+        self.known = np.zeros(count, np.int64) if known is None else known
+        self.asked = np.zeros(count, np.int64)
+        self.lost: Bools = np.zeros(count, np.bool_)
+        self.forks: list[tuple[Any, Any, Any]] = []
+
+    def decide(self, truth: Truth) -> Bools:
+        """Outcomes; the lanes where both are possible take the given one, or true, and leave false to a fork."""
+        may, must = np.broadcast_arrays(truth.may, truth.must)
+        outcome = np.array(must, np.bool_)
+        is_open = may & ~must
+        if truth.lane is None:  # of the whole case, not of a lane: as the values have it
+            return np.where(is_open, True if truth.margin is None else truth.margin > 0.0, must)
+        rows = np.flatnonzero(is_open)
+        if not len(rows):
+            return outcome
+        lane = truth.lane[rows]
+        full = self.asked[lane] >= MOST_DECISIONS
+        self.lost[lane[full]], outcome[rows[full]] = True, True
+        rows, lane = rows[~full], lane[~full]
+        at = self.asked[lane]
+        fresh = at >= self.known[lane]
+        new, place = lane[fresh], at[fresh]
+        if len(new):
+            other = self.taken[new].copy()
+            other[np.arange(len(new)), place] = False
+            self.forks.append((self.origin[new], other, place + 1))
+            self.taken[new, place], self.known[new] = True, place + 1
+        outcome[rows] = self.taken[lane, at]
+        self.asked[lane] += 1
+        return outcome
+
+    def follow(self, program: Callable[[Ints], dict[str, Any]], count: int) -> tuple[Outcomes, Ints]:
+        """All legal outcomes of a program of lane origins, with "origin"; and the lanes that are lost."""
+        origin, taken, known, names = np.arange(count), None, None, self.names
+        paths, lost, parts = np.zeros(count, np.int64), np.zeros(count, np.bool_), []
+        while True:
+            self.begin(origin, taken, known)
+            self.rows += len(origin)
+            self.names = dict(names)  # another run's symbols have other names, a fork's the same
+            parts.append({"origin": origin, **program(origin)})
+            lost[origin[self.lost]] = True
+            paths += np.bincount(origin, minlength=count)
+            if not self.forks:
+                break
+            origin, taken, known = (np.concatenate(each) for each in zip(*self.forks, strict=True))
+            lost |= paths + np.bincount(origin, minlength=count) > MOST_PATHS
+            origin, taken, known = (each[~lost[origin]] for each in (origin, taken, known))
+            if not len(origin):
+                break
+        outcomes = {name: joined([part[name] for part in parts]) for name in parts[0]}
+        return outcomes, np.flatnonzero(lost)
+
+
+def joined(parts: list[Any]) -> Any:
+    """Rows one after the other: arrays, numbers, or lists of numbers."""
+    if len(parts) == 1:
+        return parts[0]
+    if isinstance(parts[0], list):
+        return [joined(list(each)) for each in zip(*parts, strict=True)]
+    if not isinstance(parts[0], Number):
+        return np.concatenate(parts)
+
+    def column(get: Callable[[Number], Any]) -> Any:
+        return np.concatenate([np.broadcast_to(get(p), p.shape) for p in parts])
+
+    names = {name: None for part in parts for name in part.slopes}
+    slopes = {k: column(slope(k)) for k in names}
+    return Number(parts[0].ops, column(lambda p: p.value), column(lambda p: p.error), slopes)

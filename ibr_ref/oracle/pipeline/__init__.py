@@ -1,0 +1,1 @@
+"""The fixed-function pipeline on numbers with bounds: coverage, varyings, the texture unit."""

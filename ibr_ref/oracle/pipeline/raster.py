@@ -1,0 +1,139 @@
+"""Which pixels a program's triangles may cover, and with which weights of their corners.
+
+A device snaps corners within its raster: then the point of the triangle that a pixel's weights belong to lies elsewhere, by
+up to `moved` along x and y. Everything else of a fragment follows from where in this box it is, but for roundings.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from ibr_ref.oracle.accept import coverage
+from ibr_ref.oracle.accept.bounded import Bounded
+from ibr_ref.oracle.arithmetic.bounds import Bounds
+from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
+from ibr_ref.oracle.device import UNIT, Device
+
+EDGE_ROUNDINGS = 9.0
+"""Of a product in an edge function, relative to that product, besides one quotient. As (x_b - x_a)(y - y_a) - ...: two
+differences, the product, the sum: 4. As a plane q_0 + (dq/dx)(x - x_0) + (dq/dy)(y - y_0): a difference of q and one of
+positions, their product, the sum of two, the quotient by the area (whose own product and sum are 2 more), a difference of
+positions, the product with it, and two sums: 9 and a quotient."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fragments:
+    """(n,) candidates for pixels. Those of one polygon at a pixel are alternatives: its faces do not overlap."""
+
+    pixel: Ints
+    """row * width + column."""
+    polygon: Ints
+    triangle: Ints
+    """Index in the polygon's triangles."""
+    face: Ints
+    """As it is written."""
+    certain: Bools
+    """The pixel gets this candidate, or another one of the same polygon, whatever the device does."""
+    weights: Floats
+    """(n, 3) shares of the corners as the reference has them."""
+    rounding: Floats
+    """(n, 3) of a device's arithmetic."""
+    gradient: Floats
+    """(n, 3, 2) along x and y, a pixel."""
+    moved: Floats
+    """(n,) half the box's side, in pixels."""
+
+    def __len__(self) -> int:
+        return len(self.pixel)
+
+    def take(self, index: Any) -> Fragments:
+        """Some of them."""
+        return Fragments(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
+
+    def shares(self, ops: Bounds, lane: Ints, middle: Floats, half: Floats) -> list[Number]:
+        """Weights where the box's part around `middle` (n, 2), in units of `moved`, is `half` (n, 2) as large."""
+        found = []
+        for i in range(3):
+            along = self.gradient[:, i] * self.moved[:, None]
+            value = self.weights[:, i] + (along * middle).sum(axis=1)
+            slopes = {"x": along[:, 0] * half[:, 0], "y": along[:, 1] * half[:, 1]}
+            found.append(ops.named(f"share {i}", Number(ops, value, self.rounding[:, i], slopes, lane)))
+        return found
+
+
+def fragments_of(program: Any, triangles: list[tuple[int, list[Any]]], polygon: int, device: Device) -> Fragments:
+    """The candidates of one polygon's triangles: faces, and corners (7,) in clip and patch space."""
+    width, height = program.width, program.height
+    corners: list[Any] = [np.stack(vertices, axis=-1) for _, vertices in triangles]  # (7, 3)
+    clip = [[np.stack([c[i] for c in corners], axis=-1)] for i in (0, 1, 3)]  # (3, T): corner, triangle
+    w = clip[2][0]
+    x = program.window_x(program.do.divide(clip[0][0], w))
+    y = program.window_y(program.do.divide(clip[1][0], w))
+    x, y = (_bounded(c, 0.5 - program.centre(), device) for c in (x, y))
+    found = coverage.fragments(x, y, width, height, owns_border=program.owns_border)
+    at_x, at_y = coverage.snapped(x)[0], coverage.snapped(y)[0]
+    area = (at_x[:, 1] - at_x[:, 0]) * (at_y[:, 2] - at_y[:, 0]) - (at_y[:, 1] - at_y[:, 0]) * (at_x[:, 2] - at_x[:, 0])
+    signs = np.sign(np.nan_to_num(area)).astype(
+        np.int64
+    )  # corners that are no numbers cover nothing, whichever way round
+    drawn = np.array([bool(program.draws_orientation(int(sign))) for sign in signs], np.bool_)
+    shift = program.varying_centre() - program.centre()
+    value, rounding, gradient = _weights(found, at_x, at_y, area, device, shift)
+    t, pixel = found.triangle, found.rows * width + found.columns
+    patch = np.array([[c.value[4:, k] for k in range(3)] for c in corners]).reshape(-1, 3, 3)
+    result = Fragments(
+        pixel=pixel,
+        polygon=np.full(len(t), polygon),
+        triangle=t,
+        face=np.array([program.face_number(face) for face, _ in triangles], np.int64)[t],
+        certain=_surely_covered(pixel, found, patch),
+        weights=value,
+        rounding=rounding,
+        gradient=gradient,
+        moved=found.moved,
+    )
+    return result.take(drawn[t])
+
+
+def _bounded(x: Number, shift: float, device: Device) -> Bounded:
+    """(T, 3) window coordinates."""
+    return Bounded(x.value.T + shift, np.broadcast_to(x.deviation, x.shape).T, device)
+
+
+def _weights(
+    found: coverage.Fragments, x: Floats, y: Floats, area: Floats, device: Device, shift: float
+) -> tuple[Floats, Floats, Floats]:
+    """Weights, their roundings and gradients; at `shift` from the pixels' centres."""
+    px, py, t = found.columns + 0.5, found.rows + 0.5, found.triangle
+    rounding, gradient = np.empty_like(found.weights), np.empty((len(x), 3, 2))
+    units = (EDGE_ROUNDINGS * device.operation + device.quotient) * UNIT
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for i in range(3):
+            a, b = (i + 1) % 3, (i + 2) % 3
+            dx, dy = x[:, b] - x[:, a], y[:, b] - y[:, a]
+            gradient[:, i] = np.stack([-dy / area, dx / area], axis=1)
+            products = np.abs(dx[t] * (py - y[t, a])) + np.abs(dy[t] * (px - x[t, a]))
+            rounding[:, i] = units * products / np.abs(area[t])
+    value = found.weights + shift * gradient[t].sum(axis=2)
+    return value, rounding, gradient[t]
+
+
+def _surely_covered(pixel: Ints, found: coverage.Fragments, patch: Floats) -> Bools:
+    """Whether the polygon covers the pixel in any case.
+
+    Its triangles share edges, with the same corners on either side: a pixel near such an edge alone is covered by one of
+    the two, whichever it is. So only the edges that one triangle has for itself leave room for nothing, and only where a
+    triangle that may cover the pixel is not certainly inside of them.
+    """
+    corners = [[tuple(corner) for corner in triangle] for triangle in patch.tolist()]
+    keys = [[frozenset((c[(i + 1) % 3], c[(i + 2) % 3])) for i in range(3)] for c in corners]
+    count = Counter(key for triangle in keys for key in triangle)
+    shared = np.array([[count[key] > 1 for key in triangle] for triangle in keys], np.bool_).reshape(-1, 3)
+    loose = ~(found.inside | shared[found.triangle]).all(axis=1)
+    doubtful = np.zeros(int(pixel.max(initial=-1)) + 1, np.bool_)
+    doubtful[pixel[loose]] = True
+    return ~doubtful[pixel]

@@ -1,0 +1,109 @@
+"""What the port is given, as it is uploaded to the device, and the vector arithmetic that all stages share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
+from ibr_ref.scene.checks import reject
+
+Floats = Any
+"""Numbers of the arithmetic that the program runs on: arrays of a device's, or `Number`s with bounds."""
+Vector = Any
+"""Components of one vector, or of many: each numbers of any one shape."""
+Ints = Any
+Bools = Any
+"""Decided, or a `Truth`."""
+PROGRAMS = __name__.rpartition(".")[0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Patch:
+    """A base polygon on the device, with the eye and the light in its patch space."""
+
+    number: int
+    corner: Vector
+    edge_u: Vector
+    edge_v: Vector
+    normal: Vector
+    up: Vector
+    """s n."""
+    rows: Sequence[Vector]
+    """The reciprocal basis of (U, V, s n); the first two are U* and V* as well."""
+    eye: Vector
+    """(u, v, h, 1), or the direction towards it (u, v, h, 0)."""
+    light: Vector
+    scale: Floats
+    repeat: bool
+    heights: Floats
+    colors: Floats
+    normals: Floats | None
+    facade: Floats | None
+    facade_tile: Vector
+
+
+class Case:
+    """The uniforms and textures of a scene, and operations on vectors."""
+
+    limits: ClassVar[dict[str, Any]] = {}
+    """Numbers of the device that a fault takes for others."""
+
+    def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
+        """A displacement scene and its parameters; `inputs` is not used: the scene holds everything.
+
+        Raises ValueError for the systems that the paper compares with: they are no part of this port.
+        """
+        if params.method != "protruded":
+            raise reject("method", params.method, "protruded")
+        self.scene = scene
+        self.params = params
+        self.do: Any
+        self.width: int = scene.camera.width
+        self.height: int = scene.camera.height
+        self.on(Arithmetic(policy))
+
+    def on(self, do: Any) -> Self:
+        """On another arithmetic: a device's, or bounds of what devices make of it."""
+        self.do = do
+        self.multiplied: dict[int, tuple[Patch, list[Vector], list[Vector]]] = {}
+        camera = self.scene.camera
+        self.view_from_world, self.clip_from_view = do.matrix(camera.view_from_world), do.matrix(camera.clip_from_view)
+        self.eye, self.light = self.upload(camera.eye), self.upload(self.scene.light.homogeneous)
+        return self
+
+    def right(self, *names: str) -> bool:
+        """Whether no fault changes these methods: only then does another legal form stand beside what they compute."""
+        return all(getattr(type(self), name).__module__.startswith(PROGRAMS) for name in names)
+
+    def upload(self, vector: Floats) -> Vector:
+        """A vector in a uniform buffer."""
+        return list(self.do.number(vector))
+
+    def cross(self, a: Vector, b: Vector) -> Vector:
+        """The cross product."""
+        return [
+            self.do.dot([a[i], -a[j]], [b[j], b[i]])  # a_i b_j - a_j b_i
+            for i, j in ((1, 2), (2, 0), (0, 1))
+        ]
+
+    def multiply_add(self, a: Floats, b: Floats, c: Floats) -> Floats:
+        """A b + c."""
+        return self.do.dot([c, a], [1.0, b])
+
+    def scaled(self, a: Vector, factor: Floats) -> Vector:
+        """A vector times a number."""
+        return [self.do.multiply(x, factor) for x in a]
+
+    def combined(self, vectors: Sequence[Vector], factors: Sequence[Floats]) -> Vector:
+        """The sum of vectors times numbers."""
+        return [self.do.dot([vector[k] for vector in vectors], factors) for k in range(len(vectors[0]))]
+
+    def towards(self, goal: Vector, point: Vector) -> Vector:
+        """The way from points to a homogeneous goal (x, y, z, w): goal - w point. A direction needs no point."""
+        if goal[3] == 0.0:
+            return [np.broadcast_to(x, point[0].shape) for x in goal[:3]]
+        return [self.do.subtract(x, p) for x, p in zip(goal[:3], point, strict=True)]

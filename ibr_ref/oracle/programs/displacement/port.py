@@ -1,0 +1,40 @@
+"""Protruded displacement mapping as someone ports it: NumPy, one array operation for all fragments of a volume.
+
+Written from the pages of the contract, without a look at the method's kernels (those of the shared rasterizer were known).
+Three rules that the pages leave open were settled by trial against the reference: a hit at k = K is none on the volume's
+sides too; a fragment on a side's lower edge, h = 0, lies over the polygon; a mapped normal that vanishes gives n.
+
+Each operation in which a bug can hide is a method of its own, so that a broken port is a subclass that overrides one.
+
+It has no guard band: no corner may come nearer to the eye than that its window coordinates stay below 2^22 pixels.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.programs.displacement.raster import Raster
+from ibr_ref.oracle.programs.displacement.resolve import Drawn, Resolve
+from ibr_ref.oracle.programs.displacement.shade import Shade
+
+
+class Port(Shade, Resolve, Raster):
+    """The stages in order: vertex, raster, march, shade, resolve. A `PlainPort`."""
+
+    def render(self) -> dict[str, NDArray[np.generic]]:
+        """All stage arrays of the contract but the margins, "color" (H, W, 3) and "depth" (H, W)."""
+        clip, corners, drawn, triangles = [np.zeros((0, 4))], [np.zeros((0, 3))], [], 0
+        for patch in self.patches():
+            quads = self.quads(patch)
+            clip += [quad.clip for quad in quads]
+            corners += [self.written_corners(patch, quad) for quad in quads]
+            fragments = self.fragments(quads, triangles)
+            triangles = int(fragments.triangle.max(initial=triangles)) + 1
+            hits = self.march(patch, fragments)
+            drawn.append(Drawn(patch, fragments, hits, self.shade(patch, hits)))
+        return {
+            "vertex.clip": np.concatenate(clip),
+            "vertex.patch": np.concatenate(corners),
+            **self.resolve(drawn),
+        }
