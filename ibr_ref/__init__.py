@@ -15,8 +15,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ibr_ref import displacement, io, models, oracle, shadows, splatting
-    from ibr_ref.scene import BasePolygon, Camera, DepthImage, Light, Mesh
+    from ibr_ref import displacement, io, metrics, models, oracle, shadows, splatting
+    from ibr_ref.scene import BasePolygon, Camera, DepthImage, DepthSet, Light, Mesh
 
 __version__ = "0.1.0"
 
@@ -24,17 +24,19 @@ __all__ = [
     "BasePolygon",
     "Camera",
     "DepthImage",
+    "DepthSet",
     "Light",
     "Mesh",
     "displacement",
     "io",
+    "metrics",
     "models",
     "oracle",
     "shadows",
     "splatting",
 ]
 
-_MODULES = ("displacement", "io", "models", "oracle", "shadows", "splatting")
+_MODULES = ("displacement", "io", "metrics", "models", "oracle", "shadows", "splatting")
 
 
 def __getattr__(name: str) -> Any:

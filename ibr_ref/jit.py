@@ -79,6 +79,12 @@ def _digest(room: str) -> str:
 
 
 @cache
+def _tell(line: str) -> None:
+    """Say it on standard error, once."""
+    print(line, file=sys.stderr)
+
+
+@cache
 def _cache_directory(room: str) -> str:
     """A writable folder for this very version of a room's sources; a temporary one where the user's cache is read-only."""
     root = Path(config.CACHE_DIR) if config.CACHE_DIR else user_cache_path("ibr_ref", appauthor=False)
@@ -87,7 +93,9 @@ def _cache_directory(room: str) -> str:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
-    except OSError:
+    except OSError as error:
+        found = f"kernels cannot be kept in {root} ({error.strerror}) and are compiled anew each time"
+        _tell(f"ibr_ref: {found}; NUMBA_CACHE_DIR names another folder")
         folder = Path(tempfile.mkdtemp(prefix="ibr_ref-"))
     return str(folder)
 

@@ -1,4 +1,4 @@
-"""How scenes are drawn by Hypothesis, for all methods: numbers, and one run for each scene."""
+"""How scenes are drawn by Hypothesis, for all methods: one run for each scene."""
 
 from __future__ import annotations
 
@@ -6,18 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
-
-FINENESS = 2**20
-GOLDEN = 648055
-"""Golden ratio of `FINENESS`, odd: its multiples spread evenly however unevenly (small numbers first) Hypothesis draws."""
-
-
-def real(low: float, high: float, *special: float) -> SearchStrategy[float]:
-    """A number spread evenly over [low, high]; one in three is `special`, if there are such."""
-    even = st.integers(0, FINENESS).map(lambda k: low + (high - low) * (k * GOLDEN % FINENESS / FINENESS))
-    return st.one_of(even, even, st.sampled_from(special)) if special else even
 
 
 def run_scene(number: int, cases: SearchStrategy[Any], agree: Callable[[Any], None]) -> None:

@@ -125,3 +125,13 @@ def test_kernels_are_kept_in_the_user_s_cache_folder() -> None:
         place = Path(made.stdout.strip())
         assert place.is_relative_to(folder)
         assert "ibr_ref" in place.parts
+
+
+def test_a_cache_that_cannot_be_written_is_said_once(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    code = "from ibr_ref import jit; jit._cache_directory('pipeline'); jit._cache_directory('shadows')"
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "file")}
+    made = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    (line,) = made.stderr.splitlines()
+    assert line.startswith(f"ibr_ref: kernels cannot be kept in {tmp_path / 'file'} (Not a directory)")
+    assert "NUMBA_CACHE_DIR" in line

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 GIB = 2**30
@@ -35,6 +37,28 @@ def printed(*arguments: str) -> str:
 @pytest.mark.parametrize("kept", ["picture", "stages"])
 def test_a_frame_of_4096_x_4096_stays_under_4_gib(kept: str) -> None:
     assert int(printed("-c", SCRIPT, kept)) < 4 * GIB
+
+
+LARGE_MAP = """
+import resource, sys
+from ibr_ref import cli
+sys.argv = ["ibr-ref", "render", "displacement", "--height", sys.argv[1], "--out", sys.argv[2], "--size", "1920x1080"]
+try:
+    cli.main()
+except SystemExit as end:
+    assert not end.code, end.code
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+print(peak if sys.platform == "darwin" else 1024 * peak)
+"""
+
+
+def test_a_float_height_map_of_8192_x_8192_stays_under_2_gib(tmp_path: Path) -> None:
+    rows = np.linspace(0, 1, 8192, dtype=np.float32)
+    with (tmp_path / "a.pfm").open("wb") as file:
+        file.write(b"Pf\n8192 8192\n-1\n")
+        for row in rows:
+            file.write((row * rows).tobytes())
+    assert int(printed("-c", LARGE_MAP, str(tmp_path / "a.pfm"), str(tmp_path / "a.png"))) < 2 * GIB
 
 
 def test_50_million_points_stay_under_8_gib() -> None:

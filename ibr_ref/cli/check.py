@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from ibr_ref import methods
 from ibr_ref.cli import json_output
+from ibr_ref.cli.judging import Finding, Judging, worst
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.progress import progress
-
-if TYPE_CHECKING:
-    from ibr_ref.oracle.examination import Examination
 
 EXAMPLES = """
 Examples:
@@ -24,31 +25,70 @@ Examples:
 
     ibr-ref check cases/box my_port/box --device vulkan --json verdict.json
 
+    ibr-ref check cases my_port --junit verdicts.xml --report reports
+
+    ibr-ref check cases/box my_port/box --watch
+
     ibr-ref check --self-test
 
-Exit code 0: PASS, 1: FAIL, 2: INCONCLUSIVE, or the case or an option is unusable.
+Exit code 0: PASS, 1: FAIL, 2: INCONCLUSIVE, or the case or an option is unusable. Of many cases: 1 if any is FAIL, else 2
+if any is INCONCLUSIVE.
 """
 
 _DEVICES, _METHODS = (f"{', '.join(names[:-1])} or {names[-1]}" for names in ([*PROFILES], methods.names()))
 
+POLL = 0.3
+"""Seconds between two looks at the files that are watched."""
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Where verdicts go besides the words."""
+
+    json: Path | None
+    report: Path | None
+    junit: Path | None
+
 
 def command(
-    case: Annotated[Path | None, typer.Argument(help="Folder that `ibr-ref export` wrote.", show_default=False)] = None,
+    case: Annotated[
+        str | None,
+        typer.Argument(
+            help="Folder that `ibr-ref export` wrote, or one of such folders; a built-in case's name, `all`, or a pattern.",
+            show_default=False,
+        ),
+    ] = None,
     port: Annotated[
         Path | None,
-        typer.Argument(help="Folder with what the port drew: color.png or color.npy, any stages.", show_default=False),
+        typer.Argument(
+            help="Folder with what the port drew: color.png or color.npy, any stages; of many cases a folder of such, each "
+            "under its case's name.",
+            show_default=False,
+        ),
     ] = None,
     device: Annotated[
         str | None,
-        typer.Option(help=f"{_DEVICES}. Without: port.json's, or the tightest that explains all."),
+        typer.Option(
+            help=f"{_DEVICES}; with numbers, as in gl,subpixel_bits=4; or a .json file of them. "
+            "Without: port.json's, or the tightest that explains all."
+        ),
     ] = None,
     json: Annotated[
         Path | None,
         typer.Option(
-            help="Also write the verdict (--self-test: its tables) as JSON; -: on standard output, the words on standard error."
+            help="Also write the verdict, of many a list, or --self-test's tables, as JSON; -: on standard output."
         ),
     ] = None,
-    report: Annotated[Path | None, typer.Option(help="Also write it as one HTML page, with pictures.")] = None,
+    report: Annotated[
+        Path | None, typer.Option(help="Also write it as one HTML page, with pictures; of many a folder of pages.")
+    ] = None,
+    junit: Annotated[Path | None, typer.Option(help="Also write it as JUnit XML.")] = None,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Check again whenever files of the case or the port change, until Ctrl-C.")
+    ] = False,
+    fail_fast: Annotated[
+        bool, typer.Option("--fail-fast", help="Of many cases: stop at the first that does not pass.")
+    ] = False,
     self_test: Annotated[
         bool, typer.Option("--self-test", help="Try the oracle on right ports and on broken ones, and print the table.")
     ] = False,
@@ -61,27 +101,111 @@ def command(
         raise typer.Exit(run(method, json))
     if case is None or port is None:
         raise typer.BadParameter("found too few folders, allowed: CASE and PORT, or --self-test")
-    examination = _examined(case, port, device, json, report)
-    json_output.write(json, examination.verdict.model_dump_json(indent=2))
-    typer.echo(examination.verdict.words(), err=json_output.is_standard_output(json))
-    raise typer.Exit(examination.verdict.outcome.exit_code)
+    judging = Judging(case, port, device)
+    outputs = Outputs(json, report, junit)
+    _check_writable(outputs, many=judging.many)
+    raise typer.Exit(_watched(judging, outputs, fail_fast) if watch else _checked(judging, outputs, fail_fast))
 
 
-def _examined(case: Path, port: Path, device: str | None, json: Path | None, report: Path | None) -> Examination:
-    """Read, judge, and write the page."""
-    with progress(4) as step:
-        step("reading the case")
-        from ibr_ref import io, oracle
+def _checked(judging: Judging, outputs: Outputs, fail_fast: bool) -> int:
+    """Judge, write, say; the exit code."""
+    jobs = judging.jobs()
+    findings: list[Finding] = []
+    with progress(len(jobs)) as step:
+        for name, judge in jobs:
+            step(name)
+            findings.append(judge())
+            _write_report(findings[-1], outputs.report, many=judging.many)
+            if fail_fast and worst(findings):
+                break
+    _write(findings, outputs, many=judging.many)
+    aside = json_output.is_standard_output(outputs.json)
+    for finding in findings:
+        if finding.warning is not None:
+            typer.echo(f"ibr-ref: {finding.warning}", err=True)
+    lines = _table(findings, len(jobs)) if judging.many else [findings[0].verdict.words()]
+    typer.echo("\n".join(lines), err=aside)
+    return worst(findings)
 
-        json_output.check_writable(json)
-        if report is not None:
-            io.check_writable(report)
-        loaded = oracle.load_case(case)
-        step("reading what the port drew")
-        submission = oracle.load_submission(port, loaded)
-        step("judging")
-        examination = oracle.check(loaded, submission, profile=device)
-        if report is not None:
-            step("writing the report")
-            oracle.write_report(examination, report)
-    return examination
+
+def _watched(judging: Judging, outputs: Outputs, fail_fast: bool) -> int:
+    """The same until an interruption, after every change; the last exit code. What cannot be used yet is said in a line."""
+    seen: object = None
+    before: object = None
+    code = 2
+    try:
+        while True:
+            now = judging.signature()
+            if now != seen and (seen is None or now == before):  # else somebody is still writing
+                seen, code = now, _checked_or_said(judging, outputs, fail_fast)
+            before = now
+            time.sleep(POLL)
+    except KeyboardInterrupt:
+        return code
+
+
+def _checked_or_said(judging: Judging, outputs: Outputs, fail_fast: bool) -> int:
+    typer.echo(time.strftime("%H:%M:%S"), err=True)
+    try:
+        return _checked(judging, outputs, fail_fast)
+    except (ValueError, OSError) as error:
+        typer.echo(f"ibr-ref: {error}", err=True)
+        return 2
+
+
+def _check_writable(outputs: Outputs, *, many: bool) -> None:
+    """Raise OSError before long work."""
+    from ibr_ref import io
+    from ibr_ref.io.outputs import make_folder
+
+    json_output.check_writable(outputs.json)
+    if outputs.junit is not None:
+        io.check_writable(outputs.junit)
+    if outputs.report is not None:
+        if many:
+            make_folder(outputs.report)
+        else:
+            io.check_writable(outputs.report)
+
+
+def _write_report(finding: Finding, report: Path | None, *, many: bool) -> None:
+    from ibr_ref import oracle
+
+    if report is not None and finding.examination is not None:
+        oracle.write_report(finding.examination, report / f"{finding.name}.html" if many else report)
+
+
+def _write(findings: Sequence[Finding], outputs: Outputs, *, many: bool) -> None:
+    texts = [finding.verdict.model_dump_json(indent=2) for finding in findings]
+    json_output.write(outputs.json, "[\n" + ",\n".join(texts) + "\n]" if many else texts[0])
+    if outputs.junit is not None:
+        from ibr_ref.io.outputs import atomic
+        from ibr_ref.oracle.report import junit
+
+        with atomic(outputs.junit) as file:
+            file.write(junit((finding.verdict, finding.seconds) for finding in findings))
+
+
+def _table(findings: Sequence[Finding], jobs: int) -> list[str]:
+    """A line a case, and one of all."""
+    width = max(len(finding.name) for finding in findings)
+    lines = [f"{finding.verdict.outcome:12}  {finding.name:{width}}  {_said(finding)}" for finding in findings]
+    counts = [finding.verdict.outcome for finding in findings]
+    said = ", ".join(f"{counts.count(outcome)} {outcome}" for outcome in dict.fromkeys(sorted(counts, key=str)))
+    left = jobs - len(findings)
+    return [*lines, f"{len(findings)} cases: {said}" + (f"; {left} not tried." if left else ".")]
+
+
+def _said(finding: Finding) -> str:
+    """The rest of its line."""
+    verdict = finding.verdict
+    if verdict.reasons:
+        return verdict.reasons[0]
+    how = f"on {verdict.device}"
+    first = next((stage for stage in verdict.stages if stage.wrong), None)
+    if first is not None:
+        blamed = ", ".join(first.blamed)
+        how = f"first wrong in {first.stage}: {first.wrong:,} of {first.elements:,} elements, {blamed} ({how})"
+    elif verdict.biases:
+        how = f"first wrong in {verdict.first_wrong_stage}: {verdict.biases[0].parameter} ({how})"
+    return f"{how}, {finding.seconds:.1f} s"

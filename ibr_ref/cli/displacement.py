@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import emptiness, options
+from ibr_ref.cli import base_polygon, depth_set_options, emptiness, options, own_case
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
+from ibr_ref.methods import named
 from ibr_ref.progress import progress
 from ibr_ref.searches import SEARCHES
-
-if TYPE_CHECKING:
-    from ibr_ref.scene import BasePolygon
 
 EXAMPLES = """
 Examples:
@@ -24,6 +22,8 @@ Examples:
 
     ibr-ref render displacement --height h.png --invert-height --color c.png --normal n.png --height-scale 0.1 --steps 50
     --out image.png --stages dump.npz
+
+    ibr-ref render displacement --height dem.tif --height-range 350,4850 --texel-size 30 --out terrain.png
 
     ibr-ref render displacement --height h.png --color c.png --method tatarchuk --max-steps 80 --out occlusion.png
 """
@@ -43,6 +43,21 @@ class Interval(StrEnum):
     volume = "volume"
 
 
+class HeightFormat(StrEnum):
+    """Of a height file that does not say it."""
+
+    hgt = "hgt"
+    raw = "raw"
+    terrarium = "terrarium"
+
+
+class ByteOrder(StrEnum):
+    """Of raw samples."""
+
+    little = "little"
+    big = "big"
+
+
 class FaceSet(StrEnum):
     """Faces of the volume that are drawn."""
 
@@ -52,9 +67,36 @@ class FaceSet(StrEnum):
 
 
 def command(
-    out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
+    out: options.Out,
     height: Annotated[
-        Path | None, typer.Option(help="Height map, white is high: grey PNG (8 or 16 bits) or JPEG.")
+        Path | None,
+        typer.Option(help="Height map, white is high: PNG, JPEG, TIFF, GeoTIFF, EXR, PFM, .hgt, .raw, .r16, .r32."),
+    ] = None,
+    height_format: Annotated[
+        HeightFormat | None, typer.Option(help="Of a file that does not say it. Without: content, .hgt, .raw.")
+    ] = None,
+    height_size: Annotated[
+        options.Size | None,
+        typer.Option(
+            parser=options.size, metavar="WxH", help="Samples of a raw file: of 1, 2 (unsigned) or 4 bytes (float)."
+        ),
+    ] = None,
+    height_order: Annotated[ByteOrder | None, typer.Option(help="Byte order of a raw file. Without: little.")] = None,
+    height_range: Annotated[
+        options.Pair | None,
+        typer.Option(
+            parser=options.pair,
+            metavar="LOW,HIGH",
+            help="Heights that become 0 and 1, in the file's numbers. Without: all that unsigned integers can say; others "
+            "must lie in [0, 1].",
+        ),
+    ] = None,
+    nodata: Annotated[
+        float | None,
+        typer.Option(parser=options.number, help="Number that stands for no height. Without: the file's own."),
+    ] = None,
+    fill: Annotated[
+        float | None, typer.Option(parser=options.number, help="Height given to where there is none; without, refused.")
     ] = None,
     normal_height: Annotated[
         Path | None,
@@ -71,8 +113,21 @@ def command(
         bool, typer.Option("--no-exif", help="Keep the rows as stored: do not turn images as their Exif tags say.")
     ] = False,
     height_scale: Annotated[
-        float, typer.Option(parser=options.number, help="Height of white, world units; the map's longer side is 1.")
-    ] = 0.15,
+        float | None,
+        typer.Option(
+            parser=options.number,
+            help="Height of white, world units; the map's longer side is 1. With --texel-size: in the map's own units. "
+            "Without: 0.15, or the true proportions where the size of a texel is known.",
+        ),
+    ] = None,
+    texel_size: Annotated[
+        options.Pair | None,
+        typer.Option(
+            parser=options.one_or_two,
+            metavar="A[,B]",
+            help="Width (and height) of a texel in the units of the heights. Without: what a GeoTIFF or .hgt says.",
+        ),
+    ] = None,
     eye: Annotated[
         options.Vector,
         typer.Option(
@@ -117,7 +172,10 @@ def command(
     distance_layers: Annotated[
         int, typer.Option(parser=options.whole, help="donnelly: layers of the distance texture.")
     ] = 32,
+    depth_set: depth_set_options.OneDepthImage = None,
+    bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+    case: own_case.Folder = None,
 ) -> None:
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
     with progress(3) as step:
@@ -125,12 +183,33 @@ def command(
         from ibr_ref import displacement, io
         from ibr_ref.scene import Camera, Light
 
-        io.check_image_writable(out)
+        io.check_image_writable(out, bits)
+        own_case.check_writable(case)
         if stages is not None:
             io.check_writable(stages)
-        polygon = _polygon(
-            height, normal_height, color, normal, facade, facade_tile, invert_height, height_scale, not no_exif
+        heights, normals = base_polygon.read_maps(
+            height,
+            normal_height,
+            normal,
+            invert_height=invert_height,
+            exif=not no_exif,
+            kind=height_format and height_format.value,
+            size=height_size,
+            order=height_order and height_order.value,
+            height_range=height_range,
+            nodata=nodata,
+            fill=fill,
         )
+        polygon = base_polygon.polygon(
+            heights,
+            normals,
+            color,
+            facade,
+            proportions=heights.proportions(height_scale, texel_size),
+            facade_tile=facade_tile,
+            exif=not no_exif,
+        )
+        del heights
         params = displacement.Params(
             linear_steps=steps,
             binary_steps=binary_steps,
@@ -158,51 +237,11 @@ def command(
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
-        frame.save(out)
+        if depth_set is not None:
+            io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
+        frame.save(out, bits)
+    own_case.write(case, scene, params)
     emptiness.say(frame, lambda: displacement.culled(scene, params))
-
-
-def _polygon(
-    height: Path | None,
-    normal_height: Path | None,
-    color: Path | None,
-    normal: Path | None,
-    facade: Path | None,
-    facade_tile: tuple[float, float],
-    invert_height: bool,
-    height_scale: float,
-    exif: bool,
-) -> BasePolygon:
-    """The maps on a rectangle of their own shape: longer side 1, centred, z up, the images' top edge at +y.
-
-    Rows are turned over: texture row 0 lies at v = 0, which must be at -y for the polygon's normal to point up.
-    """
-    from ibr_ref import io
-    from ibr_ref.scene import BasePolygon
-
-    if (height is None) == (normal_height is None) or (normal_height is not None and normal is not None):
-        raise typer.BadParameter("give either --height (and perhaps --normal) or --normal-height")
-    normals = None if normal is None else io.read_normal(normal, exif)
-    if normal_height is not None:
-        normals, heights = io.read_normal_height(normal_height, exif)
-    else:
-        assert height is not None
-        heights = io.read_height(height, exif)
-    heights = 1.0 - heights if invert_height else heights
-    colors = io.read_color(color, exif) if color else 0.25 + 0.65 * heights[..., None].repeat(3, axis=2)
-    longest = max(heights.shape)
-    across, along = heights.shape[1] / longest, heights.shape[0] / longest
-    return BasePolygon(
-        corner=(-across / 2, -along / 2, 0.0),
-        edge_u=(across, 0.0, 0.0),
-        edge_v=(0.0, along, 0.0),
-        height_map=heights[::-1],
-        color_map=colors[::-1],
-        normal_map=None if normals is None else normals[::-1],
-        facade_map=None if facade is None else io.read_color(facade, exif),
-        facade_tile=facade_tile,
-        height_scale=height_scale,
-    )
 
 
 def goes_with() -> dict[str, Beside]:
@@ -215,11 +254,29 @@ def goes_with() -> dict[str, Beside]:
     walls = READ_BY["steep_threshold"]
     return {
         **{name: read(name) for name in signature(command).parameters if name in READ_BY},
-        **always("out", "height", "color", "invert_height", "height_scale", "eye", "target", "fov", "near", "far"),
+        **always(
+            "out",
+            "bits",
+            "depth_set",
+            "height",
+            "color",
+            "invert_height",
+            "height_scale",
+            "eye",
+            "target",
+            "fov",
+            "near",
+            "far",
+        ),
         **always("no_exif", "light", "size", "shadow_steps", "method", "stages"),
+        **{
+            name: Beside("it says how --height is read", {"height": GIVEN})
+            for name in ("height_format", "height_size", "height_order", "height_range", "nodata", "fill", "texel_size")
+        },
         "normal_height": Beside("it holds both", {"height": ABSENT, "normal": ABSENT}),
         "normal": Beside("--normal-height holds the normals", {"normal_height": ABSENT}),
         "facade": read("facade_map"),
+        "case": Beside(own_case.WHY, {"method": named("displacement").judged[1]}),
         "facade_tile": Beside("facade_tile is the size of its tiles", {"facade": GIVEN}),
         "steps": read("linear_steps"),
         "binary_steps": Beside(

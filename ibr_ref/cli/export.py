@@ -18,17 +18,24 @@ Examples:
 
     ibr-ref export all cases
 
+    ibr-ref export "displacement-*" cases
+
     ibr-ref export --schema > case.schema.json
 """
 
 
 def command(
     case: Annotated[
-        str | None, typer.Argument(metavar="CASE", help="A case's name, or `all`.", show_default=False)
+        str | None,
+        typer.Argument(
+            metavar="CASE",
+            help="A case's name, `all`, a pattern of names, or a folder of one's own: a case's or of cases.",
+            show_default=False,
+        ),
     ] = None,
     folder: Annotated[
         Path | None,
-        typer.Argument(metavar="DIR", help="Made; of `all` a folder in it for each case.", show_default=False),
+        typer.Argument(metavar="DIR", help="Made; of several a folder in it for each case.", show_default=False),
     ] = None,
     list_: Annotated[bool, typer.Option("--list", help="Print all cases: name, kind, and what each tries.")] = False,
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of case.json.")] = False,
@@ -64,12 +71,12 @@ def _print_list() -> None:
         typer.echo(f"{name:{width}}  {case.kind:11}  {case.about}")
 
 
-def _export(name: str, folder: Path, force: bool) -> None:
-    from ibr_ref.oracle import cases, files
+def _export(word: str, folder: Path, force: bool) -> None:
+    from ibr_ref.oracle import choice, files
 
-    names = cases.names() if name == "all" else [name]
-    with progress(len(names)) as step:
-        for each in names:
-            step(each)
-            case = cases.build(each)
-            files.export(case, folder / each if name == "all" else folder, force=force)
+    choices = choice.chosen([word])
+    many = choice.is_many(word)
+    with progress(len(choices)) as step:
+        for each in choices:
+            step(each.name)
+            files.export(each.make(), folder / each.name if many else folder, force=force)

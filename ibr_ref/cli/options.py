@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterable
 from enum import StrEnum
 from functools import wraps
+from pathlib import Path
 from typing import Annotated, NamedTuple, TypeVar
 
 import typer
@@ -40,7 +41,7 @@ class Vector(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """A size in world units, or a place on a plane."""
+    """A size in world units, a place on a plane, or a range."""
 
     x: float
     y: float
@@ -72,7 +73,14 @@ class Law(NamedTuple):
 
 
 class Cameras(tuple[int, ...]):
-    """Their numbers."""
+    """Their numbers; none: all that there are."""
+
+    def __str__(self) -> str:
+        return _joined(self) or "all"
+
+
+class Numbers(tuple[float, ...]):
+    """As many as a matrix or a pinhole has."""
 
     def __str__(self) -> str:
         return _joined(self)
@@ -141,6 +149,8 @@ def whole(text: str) -> int:
     return int(text)
 
 
+Out = Annotated[Path, typer.Option(help="The picture: .png, .jpg, or .exr (floats; needs ibr_ref[io]).")]
+Bits = Annotated[int, typer.Option(parser=whole, help="Of each colour in a .png: 8 or 16.")]
 Near = Annotated[
     float | None, typer.Option(parser=number, help="Distance of the near plane. Without: before all that is there.")
 ]
@@ -169,17 +179,37 @@ def pair(text: str) -> Pair:
 
 
 @_reads
+def one_or_two(text: str) -> Pair:
+    """A, which stands for A,A, or A,B."""
+    return Pair(*_numbers(text if "," in text else f"{text},{text}", 2, "30 or 20,30"))
+
+
+@_reads
 def law(text: str) -> Law:
     """A,B,C,D of a splat law."""
     return Law(*_numbers(text, 4, "1,0,0.002,0.7"))
 
 
 @_reads
+def intrinsics(text: str) -> Numbers:
+    """FX,FY,CX,CY of a pinhole, pixels."""
+    return Numbers(_numbers(text, 4, "525,525,319.5,239.5"))
+
+
+@_reads
+def pose(text: str) -> Numbers:
+    """A matrix, row by row: 12 numbers, or 16."""
+    return Numbers(_numbers(text, 16 if text.count(",") == 15 else 12, "1,0,0,0,0,1,0,0,0,0,1,0"))
+
+
+@_reads
 def cameras(text: str) -> Cameras:
-    """I,J,..: numbers of cameras."""
+    """I,J,..: numbers of cameras; or all."""
+    if text == "all":
+        return Cameras()
     parts = text.split(",")
     if not all(part[:1].isdigit() and _WHOLE.fullmatch(part) for part in parts):
-        raise _bad(text, "numbers of cameras, such as 0 or 0,1")
+        raise _bad(text, "numbers of cameras, such as 0 or 0,1, or all")
     return Cameras(map(int, parts))
 
 

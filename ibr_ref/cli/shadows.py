@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import emptiness, options
+from ibr_ref.cli import depth_set_options, emptiness, options, own_case
 from ibr_ref.cli.command import given
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
+from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -26,6 +27,8 @@ Examples:
     ibr-ref render shadows --out horse.png
 
     ibr-ref render shadows --caster cow.obj --samples 9 --offset 0.3,-0.2 --out cow.png
+
+    ibr-ref render shadows --light 2,1,4 --light-size 0.3,0.1 --samples 9 --out horse.png
 
     ibr-ref render shadows --caster cow.obj --method pcss --light-size 0.3 --report --out cow.png
 
@@ -88,7 +91,7 @@ class Up(StrEnum):
 
 def command(
     context: typer.Context,
-    out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
+    out: options.Out,
     caster: Annotated[
         Path | None, typer.Option(help="The mesh that moves: OBJ, PLY, STL, glTF, Bézier patches. Without: a horse.")
     ] = None,
@@ -100,13 +103,25 @@ def command(
     samples: Annotated[
         int, typer.Option(parser=options.whole, help="Samples of the light: 1 (a hard shadow), 5 or 9.")
     ] = 1,
-    light_size: Annotated[
-        float,
+    light: Annotated[
+        options.Vector | None,
         typer.Option(
-            parser=options.number,
-            help="Half the side of the light, for more than one sample; the mesh's largest extent is 1.",
+            parser=options.vector, metavar="X,Y,Z", help="Where the light is; its maps fit. Without: -1,-1.2,5."
         ),
-    ] = 0.12,
+    ] = None,
+    light_target: Annotated[
+        options.Vector | None,
+        typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point that the light looks at. Without: 0,0,0."),
+    ] = None,
+    light_size: Annotated[
+        options.Pair,
+        typer.Option(
+            parser=options.one_or_two,
+            metavar="A[,B]",
+            help="Half the side of the light, or half of both, along x and y, for more than one sample; the mesh's largest "
+            "extent is 1.",
+        ),
+    ] = options.Pair(0.12, 0.12),
     method: Annotated[
         Method,
         typer.Option(
@@ -151,14 +166,18 @@ def command(
             "--report", help="Print how far the shadow is from the rendered or traced one, and the maps' memory."
         ),
     ] = False,
+    depth_set: depth_set_options.OneDepthImage = None,
+    bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+    case: own_case.Folder = None,
 ) -> None:
     """Shadows by image warping (Kang & Ihm 2002) of a mesh that moves over a floor with steps."""
     with progress(4) as step:
         step("reading the mesh")
         from ibr_ref import io, models, shadows
 
-        io.check_image_writable(out)
+        io.check_image_writable(out, bits)
+        own_case.check_writable(case)
         for path in (stages, None if maps is None or _kept(maps) else maps):
             if path is not None:
                 io.check_writable(path)
@@ -166,6 +185,8 @@ def command(
             read_caster(caster, up),
             offset=offset,
             light_size=light_size,
+            light_position=light,
+            light_target=light_target,
             eye=eye,
             target=target,
             width=size.width,
@@ -200,11 +221,14 @@ def command(
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
-        frame.save(out)
+        if depth_set is not None:
+            io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
+        frame.save(out, bits)
     for line in lines:
         typer.echo(line)
     emptiness.say(frame, lambda: shadows.culled(scene))
     if not method.soft:
+        own_case.write(case, scene, params, **({} if prepared is None else {"maps": prepared}))
         emptiness.say_cut(shadows.cut_by_light(scene, params))
 
 
@@ -285,7 +309,9 @@ def goes_with() -> dict[str, Beside]:
         return Beside(f"others do not read {name}", {"method": READ_BY[name]})
 
     return {
-        **always("out", "caster", "offset", "method", "eye", "target", "near", "far", "size", "report", "stages"),
+        **always("out", "bits", "caster", "offset", "light", "light_target", "method", "eye", "target", "near", "far"),
+        **always("size", "report", "stages", "depth_set"),
+        "case": Beside(own_case.WHY, {"method": named("shadows").judged[1]}),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),
         "light_size": Beside(

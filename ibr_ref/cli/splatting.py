@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import emptiness, options
+from ibr_ref.cli import depth_set_options, emptiness, options, own_case, splatting_sources
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
+from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ibr_ref.scene import Camera, DepthImage
     from ibr_ref.splatting import Params, Scene
 
 EXAMPLES = """
@@ -24,6 +22,10 @@ Examples:
     ibr-ref render splatting --msr breakdancers --cameras 0 --view 1 --report --out view.png
 
     ibr-ref render splatting --msr breakdancers --cameras 0,1 --view 0:1 --out midway.png
+
+    ibr-ref render splatting --rgbd freiburg3 --intrinsics 535.4,539.2,320.1,247.6 --cameras 0,40 --view 20 --out view.png
+
+    ibr-ref render splatting --rgbd scene --cameras all --eye 3,-2,1 --target 0,0,0 --point-cloud scene.ply --out view.png
 
     ibr-ref render splatting --mesh cow.obj --count 9 --light=-1,-1,2 --out cow.png
 
@@ -49,20 +51,32 @@ class Method(StrEnum):
 
 
 def command(
-    out: Annotated[Path, typer.Option(help="The picture: .png or .jpg.")],
+    out: options.Out,
     msr: Annotated[Path | None, typer.Option(help="A folder of MSR 3D Video (calibParams-*.txt, images).")] = None,
+    rgbd: depth_set_options.Rgbd = None,
+    format_: depth_set_options.OfFormat = depth_set_options.Format.auto,
+    depth_scale: depth_set_options.DepthScale = None,
+    convention: depth_set_options.OfConvention = None,
+    poses: depth_set_options.OfPoses = None,
+    along: depth_set_options.OfAlong = None,
+    pixel_centers: depth_set_options.OfPixelCenters = None,
+    intrinsics: depth_set_options.Intrinsics = None,
+    max_time_gap: depth_set_options.MaxTimeGap = None,
     cameras: Annotated[
         options.Cameras,
-        typer.Option(parser=options.cameras, metavar="I,J,..", help="--msr: the cameras that are references."),
+        typer.Option(
+            parser=options.cameras, metavar="I,J,..|all", help="--msr, --rgbd: the cameras that are references."
+        ),
     ] = options.Cameras((0,)),
     view: Annotated[
         options.View | None,
         typer.Option(
             parser=options.view,
             metavar="I|I:J|I:J:F",
-            help="--msr: seen from camera I, or between I and J (midway, or at F of 1).",
+            help="--msr, --rgbd: seen from camera I, or between I and J (midway, or at F of 1).",
         ),
     ] = None,
+    pose: depth_set_options.Pose = None,
     frame: Annotated[int, typer.Option(parser=options.whole, help="--msr: number of the frame.")] = 0,
     near: Annotated[
         float | None,
@@ -97,7 +111,9 @@ def command(
     fov: Annotated[float, typer.Option(parser=options.number, help="Vertical field of view, degrees.")] = 45.0,
     size: Annotated[
         options.Size,
-        typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture; --msr has its own."),
+        typer.Option(
+            parser=options.size, metavar="WxH", help="Pixels of the picture; a camera of a data set has its own."
+        ),
     ] = options.Size(640, 480),
     law: Annotated[
         options.Law | None,
@@ -141,33 +157,58 @@ def command(
     report: Annotated[
         bool, typer.Option("--report", help="Print coverage, holes, overdraw, and the difference to the photograph.")
     ] = False,
+    depth_set: depth_set_options.DepthSet = None,
+    point_cloud: depth_set_options.PointCloud = None,
+    bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
+    case: own_case.Folder = None,
 ) -> None:
     """Splatting of reference images with depth (Lee & Park 2006) from a new view: of photographs, files, or a mesh."""
-    if [msr, simple_texture, mesh].count(None) != 2:
-        raise typer.BadParameter("give one of --msr, --simple-texture and --mesh")
-    if msr is not None and view is None:
-        raise typer.BadParameter("--msr needs --view: the number of a camera, such as 1, or 0:1 for midway between two")
+    splatting_sources.check(msr, rgbd, simple_texture, mesh, cameras, view, pose, eye)
     with progress(3) as step:
         step("reading references")
         from ibr_ref import io, splatting
         from ibr_ref.scene import Light
 
-        io.check_image_writable(out)
-        if stages is not None:
-            io.check_writable(stages)
-        photograph: DepthImage | None = None
+        io.check_image_writable(out, bits)
+        own_case.check_writable(case)
+        for path in (stages, point_cloud):
+            if path is not None:
+                io.check_writable(path)
+        camera, photograph = None, None
         if msr is not None:
             assert view is not None
-            images, camera, photograph = _from_msr(msr, cameras, view, frame, near, far, report)
+            images, camera, photograph = splatting_sources.from_msr(msr, cameras, view, frame, near, far, report)
+        elif rgbd is not None:
+            images, camera, photograph = splatting_sources.from_rgbd(
+                rgbd,
+                cameras,
+                view,
+                pose,
+                (near, far),
+                report,
+                format=None if format_.value == "auto" else format_.value,
+                depth_scale=depth_scale,
+                convention=convention,
+                poses=poses,
+                along=along,
+                pixel_centers=pixel_centers,
+                intrinsics=intrinsics,
+                max_time_gap=max_time_gap,
+            )
         else:
-            images = _images(simple_texture, mesh, count, reference_size)
-            camera = _camera(images, eye, target, up, fov, size, near, far)
+            images = splatting_sources.of_file(simple_texture, mesh, count, reference_size)
+        if camera is None:
+            camera = splatting_sources.view_of(images, eye, target, up, fov, size, near, far)
+        if depth_set is not None:
+            io.write_depth_set(depth_set, images, bits=bits)
+        if point_cloud is not None:
+            io.write_point_cloud(point_cloud, images)
         scene = splatting.Scene(
             images=images,
             camera=camera,
             light=None if light is None else Light(direction=light),
-            background=(1.0, 1.0, 1.0) if msr is None else (0.0, 0.0, 0.0),
+            background=(1.0, 1.0, 1.0) if msr is None and rgbd is None else (0.0, 0.0, 0.0),
         )
         params = _params(
             scene,
@@ -186,7 +227,8 @@ def command(
         step("writing")
         if stages is not None:
             picture.save_stages(stages)
-        picture.save(out)
+        picture.save(out, bits)
+    own_case.write(case, scene, params)
     emptiness.say(picture, lambda: splatting.culled(scene, params))
     if report:
         from ibr_ref.cli.splatting_report import report_lines
@@ -213,92 +255,44 @@ def _params(scene: Scene, law: options.Law | None, **rest: Any) -> Params:
     return splatting.Params(**fitted._asdict(), **rest)
 
 
-def _from_msr(
-    folder: Path,
-    cameras: options.Cameras,
-    view: options.View,
-    frame: int,
-    near: float | None,
-    far: float | None,
-    report: bool,
-) -> tuple[Sequence[DepthImage], Camera, DepthImage | None]:
-    """References, the view, and for a report the photograph that was taken from there, if there is one."""
-    from ibr_ref import io
-    from ibr_ref.scene import Camera
-
-    images = io.read_msr(folder, frame, cameras, near, far)
-    ends = [view.first] if view.second is None else [view.first, view.second]
-    size = images[0].camera.width, images[0].camera.height
-    first, *rest = io.read_msr_cameras(folder, ends, *size, near, far)
-    if rest:
-        return images, Camera.between(first, rest[0], view.fraction), None
-    if not (report and io.has_msr_picture(folder, frame, view.first)):
-        return images, first, None
-    (photograph,) = io.read_msr(folder, frame, ends, near, far)
-    found = photograph.camera.width, photograph.camera.height
-    if found != size:
-        raise ValueError(
-            f"{folder}: found {found[0]} x {found[1]} pixels from camera {view.first}, allowed: {size[0]} x {size[1]} as "
-            f"from camera {cameras[0]}, to be compared"
-        )
-    return images, first, photograph
-
-
-def _images(simple_texture: Path | None, mesh: Path | None, count: int, size: int) -> Sequence[DepthImage]:
-    from ibr_ref import io, models
-
-    if simple_texture is not None:
-        return io.read_simple_texture(simple_texture)
-    assert mesh is not None
-    return models.depth_rig(io.read_mesh(mesh), count, size=size)
-
-
-def _camera(
-    images: Sequence[DepthImage],
-    eye: options.Vector | None,
-    target: options.Vector | None,
-    up: options.Vector,
-    fov: float,
-    size: options.Size,
-    near: float | None,
-    far: float | None,
-) -> Camera:
-    """The view; what is not given is chosen so that all points are seen."""
-    import numpy as np
-
-    from ibr_ref import splatting
-    from ibr_ref.scene import Camera
-
-    low, high = splatting.bounds(images)
-    center = (low + high) / 2.0 if target is None else np.array(target)
-    radius = float(np.sqrt(((high - low) ** 2).sum())) / 2.0 or 1.0
-    at = center + radius * np.array([1.3, -2.3, 1.1]) if eye is None else np.array(eye)
-    camera = Camera.look_at(eye=at, target=center, up=up, vertical_fov=fov, width=size.width, height=size.height)
-    corners = [[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
-    return camera.fitted(corners, near=near, far=far)
-
-
 def goes_with() -> dict[str, Beside]:
     """Beside which others each option is read."""
     from ibr_ref.splatting.inputs import READ_BY
 
-    one = "there is one source of references"
-    photographs, camera = "it is about photographs", "the view is that of a camera of the data set"
+    one, sources = "there is one source of references", ("msr", "rgbd", "simple_texture", "mesh")
     of_shape = {
         name: Beside(f"others do not read {name}", {"shape": READ_BY[name]})
         for name in ("min_width", "footprint", "low_pass", "cutoff", "depth_tolerance")
     }
+    seen = "there is one view"
+    told = (
+        "format_",
+        "depth_scale",
+        "convention",
+        "poses",
+        "along",
+        "pixel_centers",
+        "intrinsics",
+        "max_time_gap",
+    )
     return {
-        **always("out", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),
+        **always("out", "bits", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),
+        **always("depth_set", "point_cloud"),
         **of_shape,
-        "msr": Beside(one, {"simple_texture": ABSENT, "mesh": ABSENT}),
-        "simple_texture": Beside(one, {"msr": ABSENT, "mesh": ABSENT}),
-        "mesh": Beside(one, {"msr": ABSENT, "simple_texture": ABSENT}),
-        **{name: Beside(photographs, {"msr": GIVEN}) for name in ("cameras", "view", "frame")},
+        **{name: Beside(one, {other: ABSENT for other in sources if other != name}) for name in sources},
+        "cameras": Beside("it is about photographs", {"msr": GIVEN}, {"rgbd": GIVEN}),
+        "view": Beside("it is about photographs", {"msr": GIVEN}, {"rgbd": GIVEN}),
+        "frame": Beside("it is about photographs", {"msr": GIVEN}),
+        **{name: Beside("it is about pictures with depth", {"rgbd": GIVEN}) for name in told},
+        "pose": Beside("it is one of the set's poses, in place of --view", {"rgbd": GIVEN, "view": ABSENT}),
+        "case": Beside(own_case.WHY, {"shape": named("splatting").judged[1]}),
         **{
             name: Beside("reference images are made of a mesh", {"mesh": GIVEN}) for name in ("count", "reference_size")
         },
-        **{name: Beside(camera, {"msr": ABSENT}) for name in ("eye", "target", "up", "fov", "size")},
+        **{
+            name: Beside(seen, {"msr": ABSENT, "view": ABSENT, "pose": ABSENT})
+            for name in ("eye", "target", "up", "fov", "size")
+        },
         "law": Beside("ellipses have no law, and a law is given or fitted", {"shape": READ_BY["alpha"], "fit": ABSENT}),
         "fit": Beside("ellipses have no law, and a law is given or fitted", {"shape": READ_BY["alpha"], "law": ABSENT}),
     }

@@ -51,6 +51,7 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
         **{f"render {m.name}": m.command.open().goes_with for m in methods.records() if m.command is not None},
         "export": _export,
         "check": _check,
+        "hunt": lambda: always("port", "method", "seconds", "seed", "out", "device"),
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),
@@ -76,11 +77,15 @@ def _export() -> dict[str, Beside]:
     }
 
 
+_OF_FOLDERS = ("device", "report", "junit", "watch", "fail_fast")
+"""Options of `check` that are about folders."""
+
+
 def _check() -> dict[str, Beside]:
     alone: Others = {"self_test": ABSENT}
     return {
         **{name: Beside("--self-test takes no folders", alone) for name in ("case", "port")},
-        **{name: Beside("--self-test prints its tables alone", alone) for name in ("device", "report")},
+        **{name: Beside("--self-test prints its tables alone", alone) for name in _OF_FOLDERS},
         **always("json", "self_test"),
         "method": Beside("--method goes with --self-test", {"self_test": GIVEN}),
     }

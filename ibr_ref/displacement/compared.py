@@ -12,9 +12,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ibr_ref.displacement.buffers import Hits, Uniforms
-from ibr_ref.displacement.fragment import Map, base_points
 from ibr_ref.displacement.inputs import Params
+from ibr_ref.displacement.raster import base_points
 from ibr_ref.displacement.sought import Floats, Found, Sought
+from ibr_ref.displacement.textures import Map
 from ibr_ref.methods import Room
 from ibr_ref.scene import BasePolygon
 

@@ -6,16 +6,13 @@ stay in the cache; bands run in parallel, and each pixel belongs to one of them.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
 
 from ibr_ref.displacement.buffers import fragments_for, hits_for, rays_for, shades_for
 from ibr_ref.displacement.exact import exact_search
 from ibr_ref.displacement.march import binary_search, heights_before, linear_search, mark_steep, place_hits
 from ibr_ref.displacement.margins import binary_margins, linear_border, linear_margins
-from ibr_ref.displacement.maxima import Maxima
+from ibr_ref.displacement.raster import count_fragments, rasterize
 from ibr_ref.displacement.rays import paper_rays, volume_rays
 from ibr_ref.displacement.relief import relief_search, texture_search
 from ibr_ref.displacement.resolve import (
@@ -29,9 +26,9 @@ from ibr_ref.displacement.resolve import (
 )
 from ibr_ref.displacement.self_shadow import self_shadow
 from ibr_ref.displacement.shade import albedos, facades, height_normals, light_hits, mapped_normals, slopes
+from ibr_ref.displacement.textures import Maps
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
-from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, fill_depth, fill_varyings
 
 BUILT_IN = ("protruded", "exact", "relief", "texture")
 """Searches that this kernel has; the hits of others are found before (`compared`)."""
@@ -39,69 +36,6 @@ PROTRUDED, EXACT, RELIEF, TEXTURE = range(4)
 
 BAND_PIXELS = 4096
 """Pixels of a band, about: its arrays then take half a megabyte."""
-
-
-class Map(NamedTuple):
-    """A flat texture; a map that is not there has no texels."""
-
-    texels: NDArray[np.float64]
-    columns: float
-    rows: float
-
-
-class Maps(NamedTuple):
-    """The textures of a base polygon."""
-
-    height: Map
-    color: Map
-    normal: Map
-    facade: Map
-    maxima: Maxima
-
-
-@device
-def _count(triangles, width, first_row, last_row):
-    """Fragments of all triangles in the rows [first_row, last_row)."""
-    count = 0
-    for t in range(len(triangles.source)):
-        for row in range(max(first_row, triangles.rows[t, 0]), min(last_row, triangles.rows[t, 1])):
-            first, stop = columns_in_row(edges_in_row(triangles.x[t], triangles.y[t], row), width)
-            count += stop - first
-    return count
-
-
-@device
-def rasterize(triangles, faces, width, first_row, last_row, with_depth, fragments):
-    """Stage raster: the fragments of a band, triangle by triangle."""
-    count = 0
-    for t in range(len(triangles.source)):
-        face, w, varyings = faces[triangles.source[t] // 2], triangles.w[t], triangles.varyings[t]
-        for row in range(max(first_row, triangles.rows[t, 0]), min(last_row, triangles.rows[t, 1])):
-            edges = edges_in_row(triangles.x[t], triangles.y[t], row)
-            first, stop = columns_in_row(edges, width)
-            fill_varyings(edges, first, stop, varyings, w, fragments.patch, count)
-            if with_depth:
-                fill_depth(edges, first, stop, triangles.z[t], fragments.depth, count)
-            for column in range(first, stop):
-                fragments.pixel[count] = row * width + column
-                fragments.face[count] = face
-                count += 1
-
-
-@device
-def _points_of_row(triangles, width, row, points):
-    for t in range(len(triangles.source)):
-        if triangles.rows[t, 0] <= row < triangles.rows[t, 1]:
-            edges = edges_in_row(triangles.x[t], triangles.y[t], row)
-            first, stop = columns_in_row(edges, width)
-            fill_varyings(edges, first, stop, triangles.varyings[t], triangles.w[t], points, row * width + first)
-
-
-@kernel
-def base_points(triangles, width, rows, points):
-    """Stage raster for a base face alone, whose triangles share no pixel: points (3, P), one a pixel."""
-    for row in prange(rows):
-        _points_of_row(triangles, width, row, points)
 
 
 @device
@@ -173,7 +107,7 @@ def shade(repeat, keep, hits, count, constants, settings, maps, shades):
 def _draw_band(
     repeat, keep, found, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target
 ):  # fmt: skip
-    count = _count(triangles, width, first_row, last_row)
+    count = count_fragments(triangles, width, first_row, last_row)
     if count == 0:
         return
     fragments, hits, shades = fragments_for(count), hits_for(count), shades_for(count)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ibr_ref.scene import BasePolygon, Camera, Light, checks
+from ibr_ref.scene.documented import documented
 from ibr_ref.searches import SEARCHES, read_by
 
 METHODS = tuple(SEARCHES)
@@ -60,6 +61,7 @@ class Scene:
         object.__setattr__(self, "background", checks.color("background", self.background))
 
 
+@documented("method", READ_BY)
 @dataclass(frozen=True, kw_only=True)
 class Params:
     """Parameters of the search, named as in the paper's sections 3 and 4."""

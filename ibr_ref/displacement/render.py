@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from ibr_ref.displacement import compared, inputs
 from ibr_ref.displacement.buffers import Settings
 from ibr_ref.displacement.contract import FRAGMENT_FIELDS
-from ibr_ref.displacement.fragment import BUILT_IN, Map, Maps, draw
+from ibr_ref.displacement.fragment import BUILT_IN, draw
 from ibr_ref.displacement.inputs import Params, Scene
 from ibr_ref.displacement.maxima import Maxima, build
 from ibr_ref.displacement.patch_space import uniforms
 from ibr_ref.displacement.resolve import Target, resolve_margins, target_for
+from ibr_ref.displacement.textures import Map, Maps
 from ibr_ref.displacement.vertex import Faces, vertex_stage
 from ibr_ref.io import Frame
 from ibr_ref.pipeline.clip import clip_triangles

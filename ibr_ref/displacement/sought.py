@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.displacement.buffers import Hits, Uniforms
-from ibr_ref.displacement.fragment import Map
+from ibr_ref.displacement.textures import Map
 
 Floats = NDArray[np.float64]
 

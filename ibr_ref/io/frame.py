@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.io.images import write_image
+from ibr_ref.io.images import png_bytes, write_image
 from ibr_ref.io.outputs import atomic
+from ibr_ref.scene import Camera, DepthImage
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -24,9 +25,31 @@ class Frame:
     stages: dict[str, Any] = field(default_factory=dict)
     """Arrays by name, "stage.array" (of an atlas: a tuple of them, one a page); empty with stages=False."""
 
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write the picture, in 8 bits, in the format that the name's ending says."""
-        write_image(path, self.color)
+    def __repr__(self) -> str:
+        height, width = self.depth.shape
+        stages = list(dict.fromkeys(name.partition(".")[0] for name in self.stages))
+        return f"Frame({width} x {height}, {'stages ' + ', '.join(stages) if stages else 'no stages'})"
+
+    def _repr_png_(self) -> bytes:
+        """What notebooks show: the picture."""
+        return png_bytes(self.color)
+
+    def save(self, path: str | PathLike[str], bits: int = 8) -> None:
+        """Write the picture as `write_image` does: .png in 8 or 16 bits, .jpg, or .exr with the colours as they are."""
+        write_image(path, self.color, bits)
+
+    def depth_image(self, camera: Camera) -> DepthImage:
+        """The picture as a reference image of splatting: of the camera that it was drawn for, where anything is shown.
+
+        Depths are the inverse of the camera's window depth, hence as near as float64 has them between near and far.
+        Raises ValueError for a camera for pictures of another size.
+        """
+        near, far, shown = camera.near, camera.far, self.depth < 1.0
+        if camera.perspective:
+            depth = near * far / (far - self.depth * (far - near))
+        else:
+            depth = near + self.depth * (far - near)
+        return DepthImage(color=self.color, depth=depth, camera=camera, mask=shown & (depth > 0.0))
 
     def save_stages(self, path: str | PathLike[str]) -> None:
         """Write the stages, and `color` and `depth` with them, as a NumPy archive (.npz, no pickles).

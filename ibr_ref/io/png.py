@@ -2,7 +2,8 @@
 
 Pillow decodes, with two things added. It drops the low byte of every 16-bit sample that is not plain grey (imageio asks
 Pillow, and does the same; pypng keeps it, but unfilters in Python, and its last release is of 2022). And where the
-compressed pixels end too soon, it returns what it has got and black below, without a look at the checksums.
+compressed pixels end too soon, it returns what it has got and black below, without a look at the checksums. Nor does it
+write colours of 16 bits.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ _BITS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: (8, 16
 """The bit depths that the standard allows for each colour type."""
 _ADAM7 = ((0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2))
 """The interlaced passes: first column, first row, column step, row step."""
+_UP = 2
+"""The filter that takes the sample above from each."""
 _SLICE = 1 << 14
 """Compressed bytes that are inflated at once: deflate makes at most 1032 times as many of them, 16 MiB."""
 
@@ -56,6 +59,22 @@ def decode(data: bytes) -> NDArray[np.float64]:
         raise ValueError(f"found the PNG chunks {sorted(set(kinds))}, allowed: one header, and a palette if it says so")
     _check_stream(b"".join(body for kind, body in chunks if kind == b"IDAT"), _stream_size(header))
     return _samples(_joined(chunks), header)
+
+
+def encode_16(samples: NDArray[np.uint16]) -> bytes:
+    """A PNG file of (H, W) grey or (H, W, 3) RGB samples, each row as its difference from the one above."""
+    height, width = samples.shape[:2]
+    rows = np.ascontiguousarray(samples, ">u2").reshape(height, -1).view(np.uint8)
+    filtered = np.full((height, 1 + rows.shape[1]), _UP, np.uint8)
+    filtered[:, 1:] = np.diff(rows, axis=0, prepend=np.zeros_like(rows[:1]))
+    header = struct.pack(">IIBBBBB", width, height, 16, 2 if samples.ndim == 3 else 0, 0, 0, 0)
+    return _joined([(b"IHDR", header), (b"IDAT", zlib.compress(filtered.tobytes())), (b"IEND", b"")])
+
+
+def bits(data: bytes) -> int:
+    """Of the samples of a file that `decode` accepts; of a palette's colours 8."""
+    header = _header(data)
+    return 8 if header.color_type == 3 else header.bits
 
 
 def exif(data: bytes) -> bytes | None:

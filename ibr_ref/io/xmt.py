@@ -14,6 +14,7 @@ from typing import NamedTuple, NoReturn
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
+from ibr_ref.io.inside import file_inside
 from ibr_ref.scene import checks
 from ibr_ref.scene.axis_angle import AxisAngle
 
@@ -162,10 +163,6 @@ def _path(texture: Element, folder: Path) -> Path:
     url = texture.get("url", "").strip()
     quoted = re.fullmatch(r""""([^"]*)"|'([^']*)'""", url)
     name = (quoted[1] or quoted[2] or "") if quoted else url
-    steps = re.split(r"[/\\]", name)
-    if not steps[0] or ".." in steps or ":" in name or (not quoted and name[0] in "\"'"):
+    if not quoted and name[:1] in ("'", '"'):
         raise checks.reject("url", url[:200], "the name of one file, in the folder of this one or below")
-    path = folder / name
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise checks.reject("url", url[:200], "a file in the folder of this one or below, not a link out of it")
-    return path
+    return file_inside("url", folder, name)

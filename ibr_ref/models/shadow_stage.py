@@ -7,15 +7,12 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.scene import AreaLight, Camera, Mesh, checks
+from ibr_ref.models.stage_light import half_edges, stage_light
+from ibr_ref.scene import Camera, Mesh, checks
 from ibr_ref.shadows import Scene
 
 REACH = 0.6
 """The caster's offset on either axis, in units of its largest extent, which is 1 on the stage."""
-
-_LIGHT = (-1.0, -1.2, 5.0)
-_FIELD_OF_VIEW = 27.0
-"""Degrees: the caster's shadow stays within the map wherever it is, and for every sample of the light."""
 
 _FLOOR = -0.5
 _FOOT = _FLOOR + 1.0 / 128.0
@@ -27,7 +24,9 @@ def shadow_stage(
     caster: Mesh,
     *,
     offset: ArrayLike = (0.0, 0.0),
-    light_size: float = 0.12,
+    light_size: ArrayLike = 0.12,
+    light_position: ArrayLike | None = None,
+    light_target: ArrayLike | None = None,
     eye: ArrayLike = (1.4, -3.0, 2.1),
     target: ArrayLike = (0.15, 0.35, -0.1),
     width: int = 640,
@@ -39,34 +38,31 @@ def shadow_stage(
 
     Vertices of no triangle are left out.
     offset: (x, y), each from -0.6 to 0.6: the object moves along the world's x and y. light_size: half the side of the
-    square light, world units, >= 0. eye, target: the camera's, world space; width, height: its picture, pixels. near, far:
+    square light, or of both sides (a, b) along x and y, world units, >= 0. light_position, light_target: where it is, and
+    what is in the middle of its maps; None: (-1, -1.2, 5), and the origin. Placed otherwise, its maps are made to show the
+    caster wherever it stands. eye, target: the camera's, world space; width, height: its picture, pixels. near, far:
     of its planes; None: around all that is there.
-    Raises ValueError for a mesh that is none or has no extent, and what makes no scene.
+    Raises ValueError for a mesh that is none or has no extent, a light that has not the whole caster before it, and what
+    makes no scene.
     """
     if not isinstance(caster, Mesh):
         raise checks.reject("caster", type(caster).__name__, "a Mesh")
-    half = checks.number("light_size", light_size, low=0.0)
+    edges = half_edges(light_size)
     place = checks.vector("offset", offset, 2)
     receivers, scaled = _receivers(), _scaled(caster.compact())
     above = np.array_equal(checks.vector("eye", eye)[:2], checks.vector("target", target)[:2])
     up = (0.0, 1.0, 0.0) if above else (0.0, 0.0, 1.0)
     camera = Camera.look_at(eye=eye, target=target, up=up, vertical_fov=40.0, width=width, height=height)
     around = np.concatenate([*(mesh.bounds for mesh in receivers), scaled.bounds + np.append(place, 0.0)])
+    reach = np.append(REACH + edges.diagonal(), 0.0)
+    swept = _corners(np.concatenate([scaled.bounds - reach, scaled.bounds + reach]))
     return Scene(
         receivers=receivers,
         caster=scaled,
         offset_axes=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
         offset_range=((-REACH, REACH), (-REACH, REACH)),
         offset=place,
-        light=AreaLight(
-            position=_LIGHT,
-            target=(0.0, 0.0, 0.0),
-            up=(0.0, 1.0, 0.0),
-            vertical_fov=_FIELD_OF_VIEW,
-            near=0.5,
-            far=12.0,
-            half_edges=((half, 0.0, 0.0), (0.0, half, 0.0)),
-        ),
+        light=stage_light(light_position, light_target, edges, swept, _corners(around)),
         camera=camera.fitted(_corners(around), near=near, far=far),
         ambient=0.25,
         background=(0.82, 0.88, 0.94),

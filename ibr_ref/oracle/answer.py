@@ -16,14 +16,14 @@ from ibr_ref.oracle.verdict import Outcome
 
 
 def check(case: Case, submission: Submission, *, profile: str | None = None, name_causes: bool = True) -> Examination:
-    """Judge a submission by the profile that is given, or declared by the port, or the tightest that explains it.
+    """Judge a submission by the device that is given, or declared by the port, or the tightest that explains it.
 
     A wrong image that is the image of another built-in case of the method makes the verdict INCONCLUSIVE: the port did not
-    draw this one. Raises ValueError for an unknown profile.
+    draw this one. Raises ValueError for an unknown device.
     """
     problems = [str(problem) for problem in submission.problems]
     examination = examine(
-        case, submission.handed, profile=profile or submission.profile, problems=problems, name_causes=name_causes
+        case, submission.handed, profile=profile or submission.declaration, problems=problems, name_causes=name_causes
     )
     image = examination.judgement("image")
     if image is None or not image.wrong.any():

@@ -8,6 +8,7 @@ A further profile is a call of `_device` here: options, help, READMEs and trials
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -40,6 +41,9 @@ class Device:
     """Relative error of exp2 x, in units of (1 + |x|) 2^-24."""
     weight_step: float
     """Steps of bilinear weights, in [0, 1]; a weight may be off by less than one. 0: weights are floats."""
+    filter_step: float
+    """How far a bilinear fetch from a texture of bytes may be from what its texels and weights give. 0: it is computed in
+    floats."""
     subpixel_bits: int
     """Fractional bits of window positions."""
     subpixel_any: bool
@@ -56,11 +60,23 @@ class Device:
     """How far a stored byte may be from 255 c, in steps: 0.5 is the nearest."""
     sources: dict[str, str] = field(default_factory=dict)
     """For each number the clause that grants it."""
+    numbers: dict[str, int | str] = field(default_factory=dict)
+    """What was declared, or found necessary, beside the profile: `declaration.NUMBERS`."""
+
+    @property
+    def words(self) -> str:
+        """The profile, and what it has beside it, as it is declared."""
+        return spelled(self.name, self.numbers)
 
     @property
     def snap(self) -> float:
         """How far a snapped position may lie from where the reference's lies, in pixels, besides its own rounding."""
         return 2.0**-self.subpixel_bits if self.subpixel_any else 0.0
+
+
+def spelled(profile: str, numbers: Mapping[str, int | str]) -> str:
+    """As it is declared: "gl,subpixel_bits=4"."""
+    return ",".join([profile, *(f"{name}={value}" for name, value in numbers.items())])
 
 
 _DEVICES: list[Device] = []
@@ -91,6 +107,7 @@ IEEE32 = _device(
     logarithm=(1.0, "IEEE 754-2019, 9.2: log2 is correctly rounded"),
     exponential=(1.0, "IEEE 754-2019, 9.2: exp2 is correctly rounded"),
     weight_step=(0.0, "a filter written out in float32 arithmetic"),
+    filter_step=(0.0, "a filter written out in float32 arithmetic"),
     subpixel_bits=(8, "the conventions of this reference: 1/256 pixel"),
     subpixel_any=(False, "the conventions of this reference: nearest, ties to even"),
     unsnapped=(False, "the conventions of this reference: barycentrics of the snapped positions"),
@@ -110,6 +127,7 @@ D3D11 = _device(
     logarithm=(8.0, f"{_D3D}, log instruction: absolute error 2^-21 within [0.5, 2], relative 2^-21 beyond"),
     exponential=(8.0, f"{_D3D}, exp instruction: relative error 2^-21"),
     weight_step=(2.0**-8, f"{_D3D}, texture addressing: 8 fractional bits of filter weights"),
+    filter_step=(0.0, f"{_D3D}, texture filtering arithmetic: in floats"),
     subpixel_bits=(8, f"{_D3D}, rasterizer: 16.8 fixed point window positions"),
     subpixel_any=(True, f"{_D3D}, conversion to fixed point: within 0.6 ULP of the target"),
     unsnapped=(False, f"{_D3D}, rasterizer: vertices are snapped before the triangle is set up"),
@@ -128,6 +146,7 @@ VULKAN = _device(
     logarithm=(8.0, f"{_VULKAN}: log2 3 ULP, absolute 2^-21 within [0.5, 2]; pow inherited from exp2(y log2(x))"),
     exponential=(6.0, f"{_VULKAN}: exp2 3 + 2 |x| ULP"),
     weight_step=(2.0**-8, "Vulkan 1.3, limits: subTexelPrecisionBits, 8 on desktop implementations (at least 4)"),
+    filter_step=(0.0, "Vulkan 1.3, Texel Filtering: sums of products; bytes in bytes are declared"),
     subpixel_bits=(8, "Vulkan 1.3, limits: subPixelPrecisionBits, 8 on desktop implementations (at least 4)"),
     subpixel_any=(True, "Vulkan 1.3, Rasterization: the rounding to subPixelPrecisionBits is not specified"),
     unsnapped=(False, "Vulkan 1.3, Basic Polygon Rasterization: interpolation by the areas of the rasterized polygon"),
@@ -149,6 +168,7 @@ WEBGPU = _device(
     logarithm=(8.0, f"{_WGSL}: log2 3 ULP, absolute 2^-21 within [0.5, 2]; pow inherited from exp2(y * log2(x))"),
     exponential=(6.0, f"{_WGSL}: exp2 3 + 2 |x| ULP"),
     weight_step=(2.0**-8, "WebGPU leaves filtering to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan"),
+    filter_step=(0.0, "WebGPU leaves filtering to the API below; bytes in bytes are declared"),
     subpixel_bits=(8, "WebGPU leaves it to the API below; 8 bits on Direct3D 12, Metal and desktop Vulkan"),
     subpixel_any=(True, "WebGPU, Rasterization: gives no rounding of positions"),
     unsnapped=(
@@ -173,6 +193,7 @@ GL = _device(
         2.0**-8,
         "OpenGL 4.6, Texture Minification, gives no precision of weights; 8 bits on desktop implementations",
     ),
+    filter_step=(0.0, "OpenGL 4.6, Texture Minification: sums of products; bytes in bytes are declared"),
     subpixel_bits=(8, "OpenGL 4.6, Implementation Dependent Values: SUBPIXEL_BITS at least 4, 8 on desktops"),
     subpixel_any=(True, "OpenGL 4.6, Basic Polygon Rasterization: the rounding of window positions is not specified"),
     unsnapped=(True, "OpenGL 4.6, Basic Polygon Rasterization: by areas of the triangle, snapped or not is not said"),
@@ -189,3 +210,15 @@ PROFILES: dict[str, Device] = {device.name: device for device in sorted(_DEVICES
 """By name, in the order of their ranks."""
 LOOSEST = max(_DEVICES, key=lambda device: device.rank).name
 """It grants whatever any other does."""
+
+MOST_UNDECIDED = 0.005
+"""Share of a case's pixels that the profile which it is meant for may leave open."""
+
+
+def profile_of(undecided: Mapping[str, float]) -> str:
+    """The loosest profile that leaves no more open than `MOST_UNDECIDED`; where there is none, the one that leaves least.
+
+    undecided: share of a case's pixels by profile.
+    """
+    fit = [name for name, share in undecided.items() if share <= MOST_UNDECIDED]
+    return max(fit, key=lambda name: PROFILES[name].rank) if fit else min(undecided, key=lambda name: undecided[name])

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.conventions import conventions
-from ibr_ref.oracle.device import PROFILES, Device
+from ibr_ref.oracle.declaration import ANY, Declaration, declared
+from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Explains, Explanation, Handed, Judgement, TraceRow
 from ibr_ref.oracle.referees import referee
 from ibr_ref.oracle.referees.rows import heading, text
-from ibr_ref.oracle.trials import Trial, judge, tightest
+from ibr_ref.oracle.trials import Trial, judge, needed, tightest
 from ibr_ref.oracle.verdict import Bias, Box, Outcome, StageVerdict, TraceStep, Verdict, Witness
-from ibr_ref.scene import checks
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,27 +44,36 @@ class Examination:
 # A port's numbers may be anything: what overflows or is no number on the way is told as an infinite bound, or as wrong.
 @np.errstate(all="ignore")
 def examine(
-    case: Case, handed: Handed, *, profile: str | None = None, problems: Sequence[str] = (), name_causes: bool = True
+    case: Case,
+    handed: Handed,
+    *,
+    profile: str | Declaration | None = None,
+    problems: Sequence[str] = (),
+    name_causes: bool = True,
 ) -> Examination:
     """Judge a port's arrays, as `submission_from_arrays` or `load_submission` hands them on.
 
-    profile: the device that the port declares; without one, the tightest that explains every element is sought, and a
-    port that not even the loosest explains fails by that. problems: what made files of the submission unusable; with any,
-    the verdict is INCONCLUSIVE, because what could not be read may be wrong. name_causes: whether known bugs that explain
-    a FAIL are looked for, which takes seconds. Raises ValueError for an unknown profile.
+    profile: the device that the port declares, as `declaration.declared` reads it; without a profile in it, the tightest
+    that explains every element is sought, and a port that no device explains fails by the loosest profile. problems: what
+    made files of the submission unusable; with any, the verdict is INCONCLUSIVE, because what could not be read may be
+    wrong. name_causes: whether known bugs that explain a FAIL are looked for, which takes seconds. Raises ValueError for an
+    unknown device.
     """
-    if profile is not None:
-        checks.choice("device", profile, list(PROFILES))
+    declaration = declared(profile) if isinstance(profile, str) else profile or ANY
     if problems or not handed:
         reasons = tuple(problems) or ("nothing was handed in: allowed: color, depth or any stage",)
         return Examination(case=case, handed=handed, judgements=(), verdict=_unusable(case, reasons))
-    trial, tried = _declared(case, handed, PROFILES[profile]) if profile else tightest(case, handed)
+    if declaration.profile:
+        trial, tried = _declared(case, handed, declaration.device(declaration.profile))
+    else:
+        trial, tried = tightest(case, handed, declaration)
     judgements = trial.judgements
     fields: dict[str, Any] = {
         "case": case.name,
         "method": case.method,
         "profile": trial.device.name,
-        "declared": profile is not None,
+        "numbers": trial.device.numbers,
+        "declared": declaration.profile is not None,
         "tried": tried,
         "stages": tuple(_summary(case, trial.device, handed, j) for j in judgements),
     }
@@ -85,6 +94,7 @@ def examine(
         )
     if wrong is not None:
         fields["first_wrong_stage"] = wrong.stage
+        fields["needs"] = needed(case, handed, trial)
         explanation = _explanation(case, trial.device, handed, wrong) if name_causes else None
         if explanation is not None:
             fields |= {"causes": explanation.causes, "suspects": explanation.given_up_after}
@@ -97,7 +107,7 @@ def examine(
 
 def _declared(case: Case, handed: Handed, device: Device) -> tuple[Trial, dict[str, int]]:
     trial = Trial(device, judge(case, handed, device))
-    return trial, {device.name: trial.wrong}
+    return trial, {device.words: trial.wrong}
 
 
 def _unusable(case: Case, reasons: tuple[str, ...]) -> Verdict:

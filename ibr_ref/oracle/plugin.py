@@ -4,13 +4,16 @@
         color, stages = my_port.draw(ibr_case.folder)
         ibr_case.check(color=color, stages=stages)
 
-Options: `--ibr-cases "displacement-*"` picks cases by pattern, `--ibr-profile vulkan` declares the device,
-`--ibr-reports DIR` keeps the reports. A test picks for itself with `@pytest.mark.ibr_cases("shadows-*", "splatting-rig")`.
-Nothing of the oracle but the names of its devices is imported before a test asks for it.
+Options: `--ibr-cases "displacement-*"` picks cases by pattern, `--ibr-cases DIR` takes a case of one's own or a folder of
+such, and several of these options add up; `--ibr-profile vulkan` declares the device, `--ibr-reports DIR` keeps the reports.
+A test picks for itself with `@pytest.mark.ibr_cases("shadows-*", "splatting-rig", "my_cases")`. What chooses no case is an
+error. Nothing of the oracle but the names of its devices is imported before a test asks for it.
 """
 
 from __future__ import annotations
 
+import os
+import warnings
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -21,6 +24,7 @@ import pytest
 
 if TYPE_CHECKING:
     from ibr_ref.oracle.cases.case import Case
+    from ibr_ref.oracle.choice import Choice
     from ibr_ref.oracle.verdict import Verdict
 
 
@@ -94,7 +98,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
     group = parser.getgroup("ibr_ref", "verdicts on ports of image-based rendering")
     group.addoption(
-        "--ibr-cases", metavar="PATTERN", default="*", help="cases for the fixture ibr_case: displacement-*"
+        "--ibr-cases",
+        metavar="CASES",
+        action="append",
+        help="cases for the fixture ibr_case: displacement-*, or a folder of one's own; may be given several times",
     )
     group.addoption(
         "--ibr-profile", metavar="NAME", help=f"device profile that the port declares: {', '.join(PROFILES)}"
@@ -103,31 +110,62 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """The plugin's marker."""
-    config.addinivalue_line("markers", "ibr_cases(*patterns): run the test on the cases of ibr_ref with these names")
+    """The plugin's marker. Raises UsageError for a `--ibr-cases` that chooses none."""
+    config.addinivalue_line("markers", "ibr_cases(*cases): run the test on these cases of ibr_ref: patterns, folders")
+    if config.getoption("--ibr-cases"):
+        from ibr_ref.oracle.choice import chosen
+
+        try:
+            chosen(config.getoption("--ibr-cases"))
+        except ValueError as error:
+            raise pytest.UsageError(f"--ibr-cases: {error}") from None
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One test for each case."""
     if "ibr_case" not in metafunc.fixturenames:
         return
-    from ibr_ref.oracle.cases import names
-
-    wanted = metafunc.config.getoption("--ibr-cases")
     marker = metafunc.definition.get_closest_marker("ibr_cases")
-    patterns = marker.args if marker is not None else ("*",)
-    chosen = [name for name in names() if fnmatchcase(name, wanted) and any(fnmatchcase(name, p) for p in patterns)]
-    metafunc.parametrize("ibr_case", chosen, indirect=True)
+    try:
+        choices = _choices(metafunc.config.getoption("--ibr-cases"), None if marker is None else marker.args)
+    except ValueError as error:
+        raise pytest.Collector.CollectError(f"ibr_cases of {metafunc.function.__name__}: {error}") from None
+    metafunc.parametrize("ibr_case", choices, indirect=True, ids=[choice.name for choice in choices])
+
+
+def _choices(wanted: list[str] | None, marked: tuple[str, ...] | None) -> list[Choice]:
+    """The cases that are wanted for all tests, of which a marker takes those of its patterns, and its own folders anyway.
+
+    Raises ValueError for a word that chooses none.
+    """
+    from ibr_ref.oracle.choice import ALL, chosen
+
+    found = chosen(wanted or [ALL])
+    if marked is None:
+        return found
+    marked_choices = chosen(marked)  # or a typing error would be a green run
+    patterns = [word for word in marked if not os.path.isdir(word)]
+    taken = [
+        choice
+        for choice in found
+        if any(word in (ALL, choice.name) or fnmatchcase(choice.name, word) for word in patterns)
+    ]
+    return taken + [each for each in marked_choices if each.folder is not None and each not in taken]
 
 
 @pytest.fixture
 def ibr_case(request: pytest.FixtureRequest, tmp_path: Path) -> PortCase:
     """A case of ibr_ref for a port: draw it, then `ibr_case.check(color=..., stages={...})`."""
-    from ibr_ref.oracle.cases import build
+    choice: Choice = request.param
+    case = choice.make()
+    if choice.folder is not None:
+        from ibr_ref.oracle.files import outdated
 
+        if (warning := outdated(case, choice.folder)) is not None:
+            warnings.warn(warning, stacklevel=1)
     reports = request.config.getoption("--ibr-reports")
     return PortCase(
-        build(request.param),
+        case,
         request.config.getoption("--ibr-profile"),
         tmp_path,
         Path(reports) if reports else tmp_path,

@@ -13,6 +13,7 @@ from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases import Case, build, names
+from ibr_ref.oracle.declaration import device_of
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.faults.kinds import Mutant, PlainPort, Variant
 from ibr_ref.oracle.judgement import Handed, Judgement
@@ -75,12 +76,12 @@ def try_variants(method: str) -> Iterator[VariantResult]:
         accused, pixels = [], 0
         for case in cases:
             handed = port_output(case, variant.port or module.Port, variant)
-            judgements = judge(case, handed, PROFILES[variant.profile])
+            judgements = judge(case, handed, device_of(variant.profile))
             accused += [f"{case.name}: {j.stage}" for j in judgements if j.wrong.any()]
             image = judgements[-1]
             accused += [
                 f"{case.name}: {bias.parameter}"
-                for bias in biases(case, handed, image, PROFILES[variant.profile], wrong=False)
+                for bias in biases(case, handed, image, device_of(variant.profile), wrong=False)
                 if not image.wrong.any()
             ]
             pixels += image.wrong.size

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.declaration import ANY, Declaration
 from ibr_ref.oracle.device import LOOSEST, PROFILES, Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees import referee
@@ -13,6 +15,9 @@ LIKELY = [name for name, device in PROFILES.items() if device.likely]
 """What the loosest does not explain is wrong, and no other is tried after it has failed. By one of the likely ones most
 right ports are explained: with stages they are tried before it, because where they fail they mostly do so in one of the
 first stages. A picture takes all profiles the same time, and a broken one only the loosest."""
+
+FREEDOMS: dict[str, Any] = {"subpixel_bits": 4, "filter_result": "unorm8"}
+"""What devices in use do and no profile grants: rasterize with the standards' least precision, filter bytes in bytes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,25 +53,49 @@ def _picture_alone(handed: Handed) -> bool:
     return "color" in handed and {*handed} <= {"color", "depth"}
 
 
-def tightest(case: Case, handed: Handed) -> tuple[Trial, dict[str, int]]:
-    """The tightest profile that leaves no element unexplained, or the loosest of all; and what each one tried left.
+def tightest(case: Case, handed: Handed, declaration: Declaration = ANY) -> tuple[Trial, dict[str, int]]:
+    """The tightest device that leaves no element unexplained, or the loosest profile; and what each one tried left.
 
-    Trials end with the first judgement that is wrong, but the loosest's: what it does not explain is wrong, and the verdict
-    rests on it.
+    declaration: numbers that every device has. Where no profile explains the port, those are tried that have what standards
+    allow and desktop devices do not have (`FREEDOMS`): as few of them as will do, with the tightest profile. Trials end with
+    the first judgement that is wrong, but the loosest profile's: what no device explains is wrong, and the verdict rests on
+    it.
     """
     tried: dict[str, int] = {}
 
-    def trial(name: str) -> Trial:
-        found = Trial(PROFILES[name], judge(case, handed, PROFILES[name], to_first_wrong=name != LOOSEST))
-        tried[name] = found.wrong
+    def trial(name: str, **more: Any) -> Trial:
+        device = Declaration(name, {**declaration.numbers, **more}).device(name)
+        found = Trial(device, judge(case, handed, device, to_first_wrong=name != LOOSEST or bool(more)))
+        tried[device.words] = found.wrong
         return found
 
     for name in () if _picture_alone(handed) else LIKELY:
         if not (found := trial(name)).wrong:
             return found, tried
     loosest = trial(LOOSEST)
-    if not loosest.wrong:
-        for name in PROFILES:
-            if name not in tried and not (found := trial(name)).wrong:
-                return found, tried
-    return loosest, tried
+    more: dict[str, Any] = {}
+    if loosest.wrong:
+        more = {key: value for key, value in FREEDOMS.items() if key not in declaration.numbers}
+        if not more or trial(LOOSEST, **more).wrong:
+            return loosest, tried
+        for key in list(more) if len(more) > 1 else ():
+            fewer = {name: value for name, value in more.items() if name != key}
+            if not trial(LOOSEST, **fewer).wrong:
+                more = fewer
+                break
+    for name in PROFILES:
+        device = Declaration(name, {**declaration.numbers, **more}).device(name)
+        if device.words not in tried and not (found := trial(name, **more)).wrong:
+            return found, tried
+    return (trial(LOOSEST, **more) if more else loosest), tried
+
+
+def needed(case: Case, handed: Handed, failed: Trial) -> dict[str, Any]:
+    """What a device would need beside its numbers for the first wrong judgement of a trial to be right; nothing: no such."""
+    wrong = next(i for i, j in enumerate(failed.judgements) if j.wrong.any())
+    for more in [{key: value} for key, value in FREEDOMS.items() if key not in failed.device.numbers]:
+        device = Declaration(failed.device.name, {**failed.device.numbers, **more}).device(failed.device.name)
+        found = judge(case, handed, device, to_first_wrong=True)
+        if len(found) > wrong and not found[wrong].wrong.any():
+            return more
+    return {}

@@ -6,6 +6,8 @@ from enum import StrEnum
 
 from pydantic import BaseModel, ConfigDict
 
+from ibr_ref.oracle.device import spelled
+
 
 class Outcome(StrEnum):
     """What a verdict can be, and the exit code of `ibr-ref check`."""
@@ -126,13 +128,17 @@ class Verdict(_Record):
     """Of an INCONCLUSIVE: what is missing or unusable."""
     profile: str | None = None
     """PASS: the tightest profile tried that explains every element. FAIL: the one that the counts are by."""
+    numbers: dict[str, int | str] = {}
+    """What the device has beside the profile: declared, or found to be needed (`declaration.NUMBERS`)."""
     declared: bool = False
     """Whether the port, or the caller, named the profile."""
     tried: dict[str, int] = {}
-    """Profiles in the order in which they were tried, and how many elements each leaves unexplained: all of them where the
-    verdict is by that profile, else those of the first entry of `stages` that it calls wrong."""
+    """Devices in the order in which they were tried, and how many elements each leaves unexplained: all of them where the
+    verdict is by that device, else those of the first entry of `stages` that it calls wrong."""
     stages: tuple[StageVerdict, ...] = ()
     first_wrong_stage: str | None = None
+    needs: dict[str, int | str] = {}
+    """What the device would have to have for that stage to be right."""
     causes: tuple[Cause, ...] | None = None
     """Known bugs that explain the stage; several: this case does not tell them apart; none: no known one does. None where
     none was looked for."""
@@ -146,6 +152,11 @@ class Verdict(_Record):
     """Of the picture's pixels that something is drawn at, or may be."""
     median_width: float | None = None
     """Of the picture's accepted colours."""
+
+    @property
+    def device(self) -> str | None:
+        """The profile, with the numbers that it has beside it."""
+        return self.profile and spelled(self.profile, self.numbers)
 
     @property
     def witness(self) -> Witness | None:

@@ -21,6 +21,9 @@ def words(verdict: Verdict, *, trace: bool = True) -> str:
     for witness in verdict.witnesses:
         lines.append(_witness_line(witness, first=witness is verdict.witness))
         lines += folded(_trace_lines(witness)) if trace else []
+    if verdict.needs:
+        needs = ",".join(f"{name}={value}" for name, value in verdict.needs.items())
+        lines.append(f"  {verdict.first_wrong_stage} would be right with {needs}: declare it if your device has it.")
     lines += _causes(verdict)
     for convention in verdict.conventions:
         if convention.explains:
@@ -58,11 +61,11 @@ def _headline(verdict: Verdict) -> str:
     head = f"{verdict.outcome}: {verdict.case}"
     if verdict.outcome is Outcome.INCONCLUSIVE:
         return f"{head}, the submission cannot be judged."
-    explains = verdict.profile is not None and verdict.tried.get(verdict.profile) == 0
+    explains = verdict.device is not None and verdict.tried.get(verdict.device) == 0
     how = "declared" if verdict.declared else "the tightest" if explains else "the loosest"
     if verdict.outcome is Outcome.PASS:
-        return f"{head}, every element is what a correct port may have on {verdict.profile} ({how})."
-    return f"{head}, first wrong in stage {verdict.first_wrong_stage}, judged by {verdict.profile} ({how})."
+        return f"{head}, every element is what a correct port may have on {verdict.device} ({how})."
+    return f"{head}, first wrong in stage {verdict.first_wrong_stage}, judged by {verdict.device} ({how})."
 
 
 def _stage_line(stage: StageVerdict, *, alone: bool) -> str:

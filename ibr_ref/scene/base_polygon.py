@@ -16,6 +16,11 @@ class BasePolygon:
 
     Patch space is (u, v, h): h = 0 on the polygon, h = 1 `height_scale` world units along normalize(edge_u x edge_v).
     Maps may differ in size; texel row 0 lies at v = 0. Raises ValueError for anything outside the stated ranges.
+
+    Edges that are mirrored, such as those of a mesh whose texture coordinates are, would push the surface out on the other
+    side: `up` says which side is meant. Where edge_u x edge_v points away from it, the polygon is described from its other
+    end, as the same surface in a right-handed frame, which is all that renderers, ports and cases ever see: corner + edge_u,
+    -edge_u, and maps with their columns reversed, normals negated in x.
     """
 
     corner: ArrayLike
@@ -38,6 +43,9 @@ class BasePolygon:
     """Width and height of one facade tile in world units, > 0."""
     domain: str = "clip"
     """`"clip"`: the map ends at its border; "repeat": it tiles the plane (fetches wrap)."""
+    up: ArrayLike | None = None
+    """(3,) a direction on the side of the surface, not in the polygon's plane. None: edge_u x edge_v. A facade's tiles run
+    along the edges of the right-handed frame, never mirrored."""
 
     def __post_init__(self) -> None:
         set_field = object.__setattr__
@@ -55,6 +63,34 @@ class BasePolygon:
         set_field(self, "facade_tile", (float(tile[0]), float(tile[1])))
         checks.choice("domain", self.domain, ("clip", "repeat"))
         self._check_edges()
+        if self.up is not None:
+            set_field(self, "up", checks.vector("up", self.up))
+            if self._is_mirrored():
+                self._mirror()
+
+    def _is_mirrored(self) -> bool:
+        """Whether edge_u x edge_v points away from `up`."""
+        normal, up = np.cross(np.asarray(self.edge_u), np.asarray(self.edge_v)), np.asarray(self.up)
+        along = float(normal @ up)
+        if not abs(along) > 1e-12 * float(np.linalg.norm(normal) * np.linalg.norm(up)):
+            raise checks.reject(
+                "up", up.tolist(), f"a vector not in the polygon's plane, whose normal is {normal.tolist()}"
+            )
+        return along < 0.0
+
+    def _mirror(self) -> None:
+        """The same surface with u counted from the other end."""
+        set_field = object.__setattr__
+        corner, edge_u, _ = self.arrays
+        set_field(self, "corner", checks.frozen(corner + edge_u))
+        set_field(self, "edge_u", checks.frozen(-edge_u))
+        for name in ("height_map", "color_map", "normal_map"):
+            texels = getattr(self, name)
+            if texels is not None:
+                mirrored = np.ascontiguousarray(np.asarray(texels)[:, ::-1])
+                if name == "normal_map":
+                    mirrored[..., 0] = 1.0 - mirrored[..., 0]
+                set_field(self, name, checks.frozen(mirrored))
 
     def _check_edges(self) -> None:
         """U and V must span an area, and the patch space they make must be invertible in float64."""

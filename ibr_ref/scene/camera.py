@@ -290,7 +290,13 @@ class Camera:
             if not isinstance(camera, Camera):
                 raise checks.reject(name, type(camera).__name__, "a Camera")
         fraction = checks.number("fraction", fraction, low=0.0, high=1.0)
-        camera_path.check_path(first, second)
+        ends = first._end(), second._end()
+        camera_path.check_path(*ends)
         if fraction in (0.0, 1.0):
             return second if fraction else first
-        return cls(**camera_path.fields_between(first, second, fraction))
+        return cls(**camera_path.fields_between(*ends, fraction))
+
+    def _end(self) -> camera_path.End:
+        position = self.eye[:3] if self.perspective else self.world_from_view[:3, 3]
+        same = {name: getattr(self, name) for name in camera_path.End._fields if name != "position"}
+        return camera_path.End(**same, position=position)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +19,22 @@ from ibr_ref.scene.rotations import (
 )
 from ibr_ref.scene.vectors import dot
 
-if TYPE_CHECKING:
-    from ibr_ref.scene.camera import Camera
+
+class End(NamedTuple):
+    """A camera, as far as the way to another one depends on it. Fields as `Camera`'s."""
+
+    perspective: bool
+    width: int
+    height: int
+    near: float
+    far: float
+    intrinsics: NDArray[np.float64]
+    view_from_world: NDArray[np.float64]
+    position: NDArray[np.float64]
+    """(3,) where view space has its origin."""
 
 
-def check_path(first: Camera, second: Camera) -> None:
+def check_path(first: End, second: End) -> None:
     """Raise ValueError, naming the field, for two cameras that none lies between. `Camera.between` lists them."""
     if second.perspective != first.perspective:
         raise checks.reject("second.perspective", second.perspective, f"{first.perspective}, as of the first camera")
@@ -39,7 +50,7 @@ def check_path(first: Camera, second: Camera) -> None:
         rotation_matrix(f"{name}.view_from_world", camera.view_from_world[:3, :3])
 
 
-def fields_between(first: Camera, second: Camera, fraction: float) -> dict[str, Any]:
+def fields_between(first: End, second: End, fraction: float) -> dict[str, Any]:
     """What the constructor is given for the camera at a fraction, 0 < fraction < 1, of the way between two checked ones."""
 
     def lerp(a: Any, b: Any) -> Any:
@@ -47,7 +58,7 @@ def fields_between(first: Camera, second: Camera, fraction: float) -> dict[str, 
 
     k = lerp(first.intrinsics, second.intrinsics)
     near, far = lerp(first.near, second.near), lerp(first.far, second.far)
-    at = lerp(_position(first), _position(second))
+    at = lerp(first.position, second.position)
     r = rotation_of(_quaternion_between(_orientation(first), _orientation(second), fraction))
     view = np.eye(4)
     view[:3, :3] = r
@@ -64,12 +75,7 @@ def fields_between(first: Camera, second: Camera, fraction: float) -> dict[str, 
     }
 
 
-def _position(camera: Camera) -> NDArray[np.float64]:
-    """(3,) where view space has its origin."""
-    return camera.eye[:3] if camera.perspective else camera.world_from_view[:3, 3]
-
-
-def _orientation(camera: Camera) -> Quaternion:
+def _orientation(camera: End) -> Quaternion:
     """The true rotation nearest to view_from_world's."""
     return normalized(quaternion(nearest_rotation(camera.view_from_world[:3, :3])))
 

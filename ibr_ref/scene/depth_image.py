@@ -52,6 +52,20 @@ class DepthImage:
         """color, depth and mask as arrays."""
         return np.asarray(self.color), np.asarray(self.depth), np.asarray(self.mask)
 
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """(N, 3) in world space: those of the pixels inside the mask, row after row."""
+        _, depths, mask = self.arrays
+        (f_x, skew, c_x), (_, f_y, c_y) = self.camera.intrinsics[:2].tolist()
+        rows, columns = np.nonzero(mask)
+        depth = depths[mask]
+        along = depth if self.camera.perspective else 1.0
+        y_n = (rows + 0.5 - c_y) / f_y
+        x_n = (columns + 0.5 - c_x - skew * y_n) / f_x
+        x, y, z = x_n * along, -y_n * along, -depth
+        matrix = self.camera.world_from_view
+        return np.stack([row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]], axis=1)
+
 
 def _mask(value: ArrayLike | None, height: int, width: int) -> NDArray[np.bool_]:
     if value is None:

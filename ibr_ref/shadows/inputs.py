@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.scene import AreaLight, Camera, Mesh, checks
+from ibr_ref.scene.documented import documented
 from ibr_ref.scene.vectors import cross, dot, length
 from ibr_ref.shadows.maps import MOST_SAMPLES
 
@@ -140,6 +141,7 @@ def _range(value: ArrayLike) -> NDArray[np.float64]:
     return ends
 
 
+@documented("method", READ_BY)
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Params:
     """Maps, warps and light samples; the defaults are the paper's sizes (section 4.2)."""

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ibr_ref.pipeline.ellipses import MOST_CUTOFF
 from ibr_ref.scene import Camera, DepthImage, Light, checks
+from ibr_ref.scene.documented import documented
 
 SHAPES = ("square", "disc", "ellipse")
 METHODS = ("shader", "software")
@@ -60,6 +61,7 @@ class Scene:
         object.__setattr__(self, "background", checks.color("background", self.background))
 
 
+@documented("shape", READ_BY)
 @dataclass(frozen=True, kw_only=True)
 class Params:
     """The law of the width, W_s = alpha / (beta d^2 + gamma d + delta), and how splats are drawn (section 3.3).

@@ -34,6 +34,12 @@ def arguments(maps: dict[str, Path], out: Path, *more: object) -> tuple[object, 
     )
 
 
+def test_it_runs_as_a_module() -> None:
+    found = subprocess.run([sys.executable, "-m", "ibr_ref", "--version"], capture_output=True, text=True, check=False)
+    assert (found.returncode, found.stderr) == (0, "")
+    assert found.stdout.startswith("ibr-ref ")
+
+
 def test_help_does_not_import_numba() -> None:
     code = "import sys; from ibr_ref import cli; sys.argv = ['ibr-ref', '--help']\n"
     code += "try: cli.main()\nexcept SystemExit: pass\n"

@@ -40,6 +40,20 @@ def test_all_cases(run: Run, tmp_path: Path) -> None:
         assert load_case(path).name == path.name
 
 
+def test_cases_by_pattern(run: Run, tmp_path: Path) -> None:
+    assert run("export", "par*", tmp_path / "cases") == (0, "", "")
+    assert [path.name for path in (tmp_path / "cases").iterdir()] == ["parallel"]
+
+
+def test_folders_of_ones_own(run: Run, tmp_path: Path) -> None:
+    assert run("export", "all", tmp_path / "cases")[0] == 0
+    assert run("export", tmp_path / "cases", tmp_path / "again") == (0, "", "")
+    assert sorted(path.name for path in (tmp_path / "again").iterdir()) == ["maps", "parallel"]
+    assert run("export", tmp_path / "cases" / "maps", tmp_path / "one") == (0, "", "")
+    for name in ("case.json", "manifest.json"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "cases" / "maps" / name).read_bytes()
+
+
 def test_the_list(run: Run) -> None:
     code, out, err = run("export", "--list")
     assert (code, err) == (0, "")
@@ -64,6 +78,10 @@ def test_bad_arguments(run: Run, tmp_path: Path) -> None:
     assert_one_line(run("export"), "CASE", "DIR")
     assert_one_line(run("export", "maps"), "CASE", "DIR")
     assert_one_line(run("export", "nonsense", tmp_path / "x"), "nonsense", "maps")
+    assert_one_line(run("export", "map-*", tmp_path / "x"), "'map-*'", "maps-*")
+    (tmp_path / "empty").mkdir()
+    assert_one_line(run("export", tmp_path / "empty", tmp_path / "x"), "empty")
+    (tmp_path / "empty").rmdir()
     assert_one_line(run("export", "maps", "--list"), "maps", "--list")
     (tmp_path / "file").write_text("precious")
     for place in (tmp_path / "file", tmp_path / "file" / "x"):

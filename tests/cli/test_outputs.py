@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from ibr_ref import oracle
-from ibr_ref.io import write_image
+from ibr_ref.io import read_image, read_values, write_image
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
 
@@ -159,3 +159,29 @@ def test_stored_rows_are_kept(run: Run, height: Path, tmp_path: Path) -> None:
         assert run(*rendering(tmp_path / f"{name.strip()}.png", out, *options)) == (0, "", "")
         pictures[name] = out.read_bytes()
     assert pictures["turned"] == pictures["height"] != pictures["plain"] == pictures["turned "]
+
+
+def test_floats_and_sixteen_bits(run: Run, height: Path, tmp_path: Path) -> None:
+    """The frame's own colours; and each rounds to the picture of 8 bits."""
+    assert run(*rendering(height, tmp_path / "a.exr", "--stages", tmp_path / "a.npz")) == (0, "", "")
+    assert run(*rendering(height, tmp_path / "16.png", "--bits", "16")) == (0, "", "")
+    assert run(*rendering(height, tmp_path / "8.png")) == (0, "", "")
+    with np.load(tmp_path / "a.npz") as stages:
+        color = stages["color"]
+    np.testing.assert_array_equal(read_values(tmp_path / "a.exr"), color.astype(np.float32))
+    np.testing.assert_array_equal(read_image(tmp_path / "16.png"), np.floor(color * 65535 + 0.5) / 65535)
+    np.testing.assert_array_equal(read_image(tmp_path / "8.png"), np.floor(color * 255 + 0.5) / 255)
+    assert_one_line(
+        run(*rendering(height, tmp_path / "b.exr", "--bits", "16")), "found bits = 16, allowed: 8, or 16 in PNG"
+    )
+    assert_one_line(run(*rendering(height, tmp_path / "b.png", "--bits", "10")), "found bits = 10")
+    assert not (tmp_path / "b.exr").exists()
+
+
+def test_floats_into_a_pipe(run: Run, height: Path, tmp_path: Path) -> None:
+    assert run(*rendering(height, tmp_path / "a.exr")) == (0, "", "")
+    os.mkfifo(tmp_path / "out.exr")
+    thread, found = read(tmp_path / "out.exr")
+    assert run(*rendering(height, tmp_path / "out.exr")) == (0, "", "")
+    thread.join(20)
+    assert found == [(tmp_path / "a.exr").read_bytes()]

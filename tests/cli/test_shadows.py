@@ -9,7 +9,7 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from ibr_ref import metrics
+from ibr_ref import io, metrics, models, shadows
 from ibr_ref.bench import shadows as bench
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
@@ -117,15 +117,37 @@ def test_a_mesh_of_y_up_stands(run: Run, tmp_path: Path) -> None:
     assert not np.array_equal(pictures[0], pictures[2])
 
 
+def test_a_light_that_is_placed(run: Run, cube: Path, tmp_path: Path) -> None:
+    """What is drawn is the stage with that light."""
+    out = tmp_path / "out.png"
+    placed = ("--method", "direct", "--light", "2,1,4", "--light-target", "0,0.1,0", "--light-size", "0.3,0.1")
+    assert run(*of_cube(cube, out, *placed, "--samples", 5)) == (0, "", "")
+    scene = models.shadow_stage(
+        io.read_upright(cube),
+        light_position=(2, 1, 4),
+        light_target=(0, 0.1, 0),
+        light_size=(0.3, 0.1),
+        width=96,
+        height=72,
+    )
+    frame = shadows.render(scene, shadows.Params(method="direct", map_size=64, light_samples=5))
+    assert np.array_equal(io.read_image(out), np.floor(frame.color * 255 + 0.5) / 255)
+    assert 0.005 < (frame.stages["accumulate.shadow"] > 0.5).mean() < 0.3
+
+
 @pytest.mark.parametrize(
     ("more", "words"),
     [
+        (("--light", "0,0,0", "--light-target", "0,0,-0.5"), ("light_position: found [0.0, 0.0, 0.0]",)),
+        (("--light", "0,0,0"), ("light_target",)),
+        (("--light", "0,1"), ("--light", "'0,1'", "3 numbers")),
+        (("--light-size", "0.1,-1", "--samples", "5"), ("light_size: found [0.1, -1.0]",)),
         (("--offset", "0.7,0"), ("offset", "-0.6", "0.6")),
         (("--offset", "0"), ("'0'", "2 numbers")),
         (("--samples", "4"), ("light_samples", "1, 5, 9")),
         (("--map-size", "4"), ("map_size",)),
         (("--rows", "1"), ("rows",)),
-        (("--light-size", "-1"), ("light_size",)),
+        (("--light-size", "-1", "--samples", "5"), ("light_size",)),
         (("--controls", "worst"), ("worst",)),
         (("--method", "magic"), ("magic",)),
         (("--method", "direct", "--maps", "m.npz"), ("--maps", "--method")),

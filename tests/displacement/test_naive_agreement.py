@@ -13,10 +13,12 @@ import pytest
 from ibr_ref import displacement, models
 from ibr_ref.displacement import Params, Scene
 from ibr_ref.scene import BasePolygon, Camera, Light
+from ibr_ref.testing.displacement import REGIONS
+from ibr_ref.testing.displacement import Drawn as Case
+from ibr_ref.testing.displacement import drawn as cases
 from tests import drawn, naive
 from tests.agreement import Arrays, arrays_of, check_agreement, check_without_stages
 from tests.displacement.features import features
-from tests.displacement.strategies import REGIONS, Case, cases
 from tests.naive import displacement as twin
 
 SCENES = 504

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from ibr_ref import io
+from ibr_ref import io, metrics
 from ibr_ref.io.outputs import atomic
 from tests.io.test_images import check_refused, small
 
@@ -84,3 +84,23 @@ def test_a_failed_block_leaves_what_was_there(tmp_path):
         write_half()
     assert path.read_bytes() == b"whole"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_frame_is_said_in_one_line_and_shown_as_a_picture(tmp_path):
+    stages = {name: np.zeros(3) for name in ("vertex.clip", "vertex.patch", "march.hit")}
+    assert repr(frame(**stages)) == "Frame(5 x 4, stages vertex, march)"
+    assert repr(frame()) == "Frame(5 x 4, no stages)"
+    frame().save(tmp_path / "out.png")
+    assert frame()._repr_png_() == (tmp_path / "out.png").read_bytes()
+
+
+def test_where_a_picture_is_wrong():
+    truth = frame()
+    color = truth.color.copy()
+    color[1, 2, 0] += 1.5 / 255
+    color[3, 4] += 0.9 / 255
+    changed = io.Frame(color=color, depth=truth.depth)
+    assert np.argwhere(metrics.wrong(changed, truth)).tolist() == [[1, 2]]
+    assert metrics.wrong(changed, truth, steps=0.5).sum() == 2
+    with pytest.raises(ValueError, match="frame: found 5 x 3 pixels, allowed: 5 x 4 as in truth"):
+        metrics.wrong(io.Frame(color=color[1:], depth=truth.depth[1:]), truth)

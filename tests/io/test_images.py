@@ -63,11 +63,21 @@ def test_eight_bits_come_back(folder, samples):
 
 
 @small
-@given(samples=arrays(np.uint16, array_shapes(min_dims=2, max_dims=2, max_side=9)))
-def test_sixteen_bits_of_grey_come_back(folder, samples):
+@given(samples=arrays(np.uint16, grey_or_rgb))
+def test_sixteen_bits_come_back(folder, samples):
+    """And Pillow, which keeps the high bytes of colours, agrees on those."""
     path = folder / "a.png"
     io.write_image(path, samples / 65535.0, bits=16)
     np.testing.assert_array_equal(io.read_image(path), samples / 65535.0)
+    np.testing.assert_array_equal(np.asarray(Image.open(path)), samples if samples.ndim == 2 else samples >> 8)
+
+
+@small
+@given(image=arrays(np.float32, grey_or_rgb, elements=st.floats(allow_nan=False, width=32)))
+def test_floats_come_back_from_exr(folder, image):
+    """As they are: below 0, above 1, infinite."""
+    io.write_image(folder / "a.exr", image)
+    np.testing.assert_array_equal(io.read_values(folder / "a.exr"), image)
 
 
 @small
@@ -502,14 +512,22 @@ def test_what_cannot_be_written(tmp_path, name, image, words):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "folder.png"]
 
 
+WRITERS = [lambda path, bits: io.write_image(path, np.zeros((2, 2, 3)), bits=bits), io.check_image_writable]
+
+
+@pytest.mark.parametrize("write", WRITERS)
 @pytest.mark.parametrize(
-    ("name", "shape", "bits"),
-    [("a.png", (2, 2), 12), ("a.jpg", (2, 2), 16), ("a.png", (2, 2, 3), 16), ("a.png", (2, 2), "8")],
+    ("name", "bits"), [("a.png", 12), ("a.png", 0), ("a.png", "8"), ("a.png", 2**9999), ("a.jpg", 16), ("a.exr", 16)]
 )
-def test_bits_that_cannot_be_written(tmp_path, name, shape, bits):
-    check_refused(
-        lambda path: io.write_image(path, np.zeros(shape), bits=bits), tmp_path / name, "bits = ", "allowed: 8"
-    )
+def test_bits_that_cannot_be_written(tmp_path, write, name, bits):
+    check_refused(lambda path: write(path, bits), tmp_path / name, "bits = ", "allowed: 8, or 16 in PNG")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("write", WRITERS)
+def test_exr_is_not_written_without_the_extra(tmp_path, monkeypatch, write):
+    monkeypatch.setitem(sys.modules, "OpenEXR", None)
+    check_refused(lambda path: write(path, 8), tmp_path / "a.exr", "found no OpenEXR", "pip install 'ibr_ref[io]'")
     assert not list(tmp_path.iterdir())
 
 

@@ -27,6 +27,8 @@ IMAGE = DepthImage(
 WRITERS: dict[str, tuple[str, Callable[[Path], None]]] = {
     "write_image": (".png", lambda path: io.write_image(path, FRAME.color)),
     "write_image, jpeg": (".jpg", lambda path: io.write_image(path, FRAME.color)),
+    "write_image, exr": (".exr", lambda path: io.write_image(path, FRAME.color)),
+    "write_image, 16 bits": (".png", lambda path: io.write_image(path, FRAME.color, bits=16)),
     "frame.save": (".png", FRAME.save),
     "frame.save_stages": (".npz", FRAME.save_stages),
     "write_simple_texture": (".xmt", lambda path: io.write_simple_texture(path, [IMAGE])),

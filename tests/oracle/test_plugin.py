@@ -9,6 +9,8 @@ import pytest
 
 from ibr_ref import oracle
 from ibr_ref.oracle import report
+from tests.oracle.files.older import older
+from tests.oracle.tiny_cases import TINY
 
 pytest_plugins = "pytester"
 
@@ -108,6 +110,44 @@ def test_the_report_lies_in_the_test_s_own_folder_if_no_place_is_named(run: Run)
     # pytest repeats the message in its summary where CI runs it.
     (line,) = {line for line in result.outlines if line.startswith("  Report: ")}
     assert Path(line.removeprefix("  Report: ")).is_file()
+
+
+@pytest.mark.parametrize("options", [["splating-*"], ["splatting-*", "nowhere/at/all"]])
+def test_a_pattern_that_chooses_nothing_is_an_error(run: Run, options: list[str]) -> None:
+    result = run(RIGHT, *(word for option in options for word in ("--ibr-cases", option)))
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines([f"ERROR: --ibr-cases: case: found '{options[-1]}', allowed: *"])
+
+
+def test_so_is_a_marker_s(run: Run) -> None:
+    result = run('import pytest\n\n@pytest.mark.ibr_cases("shadow-*")\ndef test_port(ibr_case): pass')
+    assert result.ret not in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
+    result.stdout.fnmatch_lines(["*ibr_cases of test_port: case: found 'shadow-*', allowed: *"])
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Path:
+    """A folder with two cases of one's own, of which one was made by another version."""
+    for name in ("splatting-dots", "displacement-hill"):
+        oracle.export(TINY[name](), tmp_path / "own" / name)
+    older(tmp_path / "own" / "splatting-dots")
+    return tmp_path / "own"
+
+
+def test_folders_of_ones_own(run: Run, own: Path) -> None:
+    result = run(RIGHT, "--ibr-cases", str(own), "-v", "-W", "default")
+    result.assert_outcomes(passed=2, warnings=1)
+    result.stdout.fnmatch_lines(
+        ["*1 of * expected arrays (depth), made by another 0.0.1, are not what ibr_ref * draws*"]
+    )
+    result = run(RIGHT, "--ibr-cases", str(own / "displacement-hill"), "--ibr-cases", "*-ball", "--collect-only", "-q")
+    assert cases_of(result) == ["displacement-hill", "splatting-ball"]
+
+
+def test_a_marker_takes_a_folder_beside_patterns(run: Run, own: Path) -> None:
+    marked = f'@pytest.mark.ibr_cases("splatting-ball", {str(own)!r})'
+    result = run(f"import pytest\n\n{marked}\ndef test_port(ibr_case): pass", "--collect-only", "-q")
+    assert cases_of(result) == ["splatting-ball", "displacement-hill", "splatting-dots"]
 
 
 UNUSABLE = """

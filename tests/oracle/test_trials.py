@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.declaration import declared
 from ibr_ref.oracle.device import LOOSEST, PROFILES, Device
 from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.trials import judge, tightest
+from ibr_ref.oracle.trials import Trial, judge, needed, tightest
 from tests.oracle.plain_referee import PlainReferee, box_case
 
 STAGES = {"raster.face": np.zeros(1), "march.steep": np.zeros(1)}
@@ -61,15 +62,54 @@ def test_what_no_device_explains_is_judged_whole_by_the_loosest(monkeypatch: pyt
     monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: Explaining(()))
     found, tried = tightest(box_case(), {**STAGES, "color": np.zeros(1)})
     assert (found.device.name, found.wrong) == ("gl", 3)
-    assert tried == {"ieee32": 1, "d3d11": 1, "gl": 3}
-    assert tightest(box_case(), {"color": np.zeros(1)})[1] == {"gl": 1}
+    most = "gl,subpixel_bits=4,filter_result=unorm8"
+    assert tried == {"ieee32": 1, "d3d11": 1, "gl": 3, most: 1}
+    assert tightest(box_case(), {"color": np.zeros(1)})[1] == {"gl": 1, most: 1}
+
+
+class Coarse(Explaining):
+    """What devices with some numbers explain, whatever their profile."""
+
+    def _judge(self, stage: str, case: Case, device: Device, handed: Handed, names: tuple[str, ...]) -> Judgement:
+        self.asked.append((device.words, stage))
+        fits = {f"{key}={value}" for key, value in device.numbers.items()} >= {*self.names}
+        wrong = np.array([not fits])
+        blame = np.where(wrong, 0, -1).astype(np.int8)
+        nothing, width = np.zeros(1, np.bool_), np.zeros(1)
+        return Judgement(
+            stage=stage, element="pixel", arrays=names, wrong=wrong, undecided=nothing, width=width, blame=blame
+        )
+
+
+@pytest.mark.parametrize(
+    "numbers", [("subpixel_bits=4",), ("filter_result=unorm8",), ("subpixel_bits=4", "filter_result=unorm8")], ids=str
+)
+def test_as_few_numbers_as_will_do_are_found(numbers: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: Coarse(numbers))
+    found, _ = tightest(box_case(), {**STAGES, "color": np.zeros(1)})
+    assert (found.device.words, found.wrong) == (",".join(["ieee32", *numbers]), 0)
+
+
+def test_no_number_is_tried_that_was_declared(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: Coarse(("subpixel_bits=4",)))
+    found, tried = tightest(box_case(), {**STAGES, "color": np.zeros(1)}, declared("subpixel_bits=8"))
+    assert (found.device.words, found.wrong) == ("gl,subpixel_bits=8", 3)
+    assert list(tried)[-1] == "gl,subpixel_bits=8,filter_result=unorm8"
+    assert needed(box_case(), {**STAGES, "color": np.zeros(1)}, found) == {}
+
+
+def test_what_the_first_wrong_stage_would_need(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: Coarse(("filter_result=unorm8",)))
+    handed = {**STAGES, "color": np.zeros(1)}
+    failed = Trial(PROFILES["gl"], judge(box_case(), handed, PROFILES["gl"]))
+    assert needed(box_case(), handed, failed) == {"filter_result": "unorm8"}
 
 
 def test_the_loosest_grants_what_any_other_does() -> None:
     loosest = PROFILES[LOOSEST]
     for device in PROFILES.values():
         numbers = set(device.sources)
-        assert numbers == set(vars(device)) - {"name", "rank", "likely", "sources"}
+        assert numbers == set(vars(device)) - {"name", "rank", "likely", "sources", "numbers"}
         assert device.subpixel_bits == loosest.subpixel_bits
         assert all(getattr(device, name) <= getattr(loosest, name) for name in numbers), device.name
 

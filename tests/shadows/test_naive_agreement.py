@@ -10,8 +10,9 @@ import pytest
 from ibr_ref import models
 from ibr_ref.io import Frame
 from ibr_ref.shadows import Params, prepare
+from ibr_ref.testing.shadows import Drawn as Case
+from ibr_ref.testing.shadows import drawn as cases
 from tests import drawn
-from tests.shadows.strategies import Case, cases
 from tests.shadows.twin import check_agreement
 
 SCENES = 120

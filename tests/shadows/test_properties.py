@@ -12,8 +12,9 @@ from hypothesis import given, settings
 from ibr_ref.io import Frame
 from ibr_ref.scene import Camera, Mesh
 from ibr_ref.shadows import Scene, prepare, render
+from ibr_ref.testing.shadows import Drawn as Case
+from ibr_ref.testing.shadows import drawn as cases
 from tests.shadows.scenes import Array, ball, light, params, plate, scene
-from tests.shadows.strategies import Case, cases
 
 derandomized = settings(derandomize=True, deadline=None, max_examples=25)
 

@@ -9,10 +9,11 @@ import pytest
 
 from ibr_ref import splatting
 from ibr_ref.io import Frame
+from ibr_ref.testing.splatting import Drawn as Case
+from ibr_ref.testing.splatting import drawn as cases
 from tests import drawn
 from tests.agreement import arrays_of, check_agreement, check_without_stages
 from tests.naive import splatting as twin
-from tests.splatting.strategies import Case, cases
 
 SCENES = 240
 

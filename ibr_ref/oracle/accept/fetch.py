@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from ibr_ref.oracle.accept.bounded import Bounded, exact
-from ibr_ref.oracle.device import UNIT
+from ibr_ref.oracle.device import UNIT, Device
 
 Floats = NDArray[np.float64]
 
@@ -39,6 +39,12 @@ class Texture:
     def largest(self) -> float:
         """The largest magnitude of a texel."""
         return float(np.max(np.abs(self.texels)))
+
+    @cached_property
+    def of_bytes(self) -> bool:
+        """Whether all texels are k / 255, and so may lie in a UNORM8 texture."""
+        codes = np.rint(255.0 * self.texels)
+        return bool(((codes >= 0.0) & (codes <= 255.0)).all() and (codes / 255.0 == self.texels).all())
 
     @cached_property
     def _extremes(self) -> dict[int, tuple[Floats, Floats]]:
@@ -107,8 +113,12 @@ def fetch(texture: Texture, u: Bounded, v: Bounded) -> Bounded:
     if crossing.any():
         largest[crossing] = texture.largest
         error[crossing] = spread_around(texture, *(a[crossing] for a in (at_x, at_y, off_x, off_y, value)))
-    rounding = FILTER_ROUNDINGS * device.operation * UNIT * largest
-    return Bounded(value, error + rounding, device)
+    return Bounded(value, error + filter_error(texture, device, largest), device)
+
+
+def filter_error(texture: Texture, device: Device, largest: Any) -> Any:
+    """By how much a filter's arithmetic may be off, on texels of a magnitude of `largest` at the most."""
+    return FILTER_ROUNDINGS * device.operation * UNIT * largest + (device.filter_step if texture.of_bytes else 0.0)
 
 
 def highest_around(texture: Texture, u: Bounded, v: Bounded) -> Floats:
@@ -121,8 +131,7 @@ def highest_around(texture: Texture, u: Bounded, v: Bounded) -> Floats:
         texels.append(np.floor(np.clip(np.nan_to_num(x), -FARTHEST, FARTHEST)).astype(np.int64))
     # A fetch at x takes the texels floor(x - 0.5) and the next one, so those within 1 of floor(x); off by one, within 2.
     most = Texture(texture.extremes(2)[1], texture.repeat).at(texels[1], texels[0])
-    rounding = FILTER_ROUNDINGS * u.device.operation * UNIT * texture.largest
-    return np.where(sure, most + rounding, np.inf)
+    return np.where(sure, most + filter_error(texture, u.device, texture.largest), np.inf)
 
 
 def _finite(error: Floats) -> Floats:

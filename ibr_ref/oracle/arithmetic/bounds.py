@@ -6,19 +6,19 @@ of a formula beside it (`either`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import reduce
 from typing import Any
 
 import numpy as np
 
 from ibr_ref.oracle.arithmetic import numpy_names
-from ibr_ref.oracle.arithmetic.decisions import Decisions
-from ibr_ref.oracle.arithmetic.number import Ints, Number, Truth
+from ibr_ref.oracle.arithmetic.choices import Choices
+from ibr_ref.oracle.arithmetic.number import Ints, Number
 from ibr_ref.oracle.device import TINY, UNIT, Device
 
 
-class Bounds(Decisions):
+class Bounds(Choices):
     """Each result carries a rounding, and what it owes to the symbols."""
 
     bounded = True
@@ -29,10 +29,6 @@ class Bounds(Decisions):
         super().__init__()
 
     # --- Numbers -----------------------------------------------------------------------------------------------------
-
-    def of(self, x: Any) -> Number:
-        """Any number as a `Number`."""
-        return x if isinstance(x, Number) else Number(self, x)
 
     def number(self, x: Any) -> Any:
         """What is uploaded: rounded once. Textures stay arrays: their rounding is counted where they are filtered."""
@@ -189,119 +185,16 @@ class Bounds(Decisions):
         error = result.error + np.where(size > TINY, size * intrinsic, 0.0)
         return Number(self, result.value, error, result.slopes, result.lane)
 
-    # --- Legal alternatives, and what is known besides -------------------------------------------------------------------
-
-    def either(self, first: Any, *others: Callable[[], Any]) -> Any:
-        """A formula's other legal forms beside it; of vectors, of each component."""
-        for other in others:
-            again = other()
-            if isinstance(first, (list, tuple)):
-                first = [self.alternatives(self.of(x), self.of(y)) for x, y in zip(first, again, strict=True)]
-            else:
-                first = self.alternatives(self.of(first), self.of(again))
-        return first
-
-    def alternatives(self, f: Number, g: Number) -> Number:
-        """Two legal forms of one thing: the first one's value, and an error that covers both."""
-        away = g.plus(f, -1.0)
-        spread = reduce(np.add, [np.abs(s) for s in away.slopes.values()], np.abs(away.value) + g.error)
-        error = np.maximum(f.error, np.where(np.isnan(spread), np.inf, spread))
-        return Number(self, f.value, error, f.slopes, self.lane(f, g))
-
-    def between(self, x: Number, low: Any, high: Any) -> Number:
-        """What is known to lie between two ends, where that says more than its own bound."""
-        middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        half = half + 2.0**-52 * np.abs(middle)
-        wide = ~(x.deviation <= half)
-        slopes = {k: np.where(wide, 0.0, s) for k, s in x.slopes.items()}
-        return Number(self, np.where(wide, middle, x.value), np.where(wide, half, x.error), slopes, x.lane)
-
-    def beyond(self, x: Number, least: float, up: Any) -> Number:
-        """What is decided to be >= `least` (`up`), or <= -`least`."""
-        above, below = (self.rising(f, x) for f in (lambda v: np.maximum(v, least), lambda v: np.minimum(v, -least)))
-        return self.where(up, above, below)
-
-    def rising(self, f: Callable[[Any], Any], x: Any) -> Number:
-        """A function that nowhere falls: x where it changes nothing, else all between its ends, the value in the middle."""
-        x = self.of(x)
-        value, low, high = f(x.value), f(x.low), f(x.high)
-        same = (low == x.low) & (high == x.high) & (value == x.value)
-        with np.errstate(invalid="ignore"):
-            middle = 0.5 * (low + high)
-            half = np.maximum(high - middle, middle - low)
-            for _ in range(2):  # both ends are reached: 1 where a colour is clamped to it
-                half = np.where((middle + half < high) | (middle - half > low), np.nextafter(half, np.inf), half)
-        bounded = np.isfinite(middle)
-        value = np.where(same | ~bounded, value, middle)
-        error = np.where(same, x.error, np.where(bounded, half, np.inf))
-        return Number(self, value, error, {k: np.where(same, s, 0.0) for k, s in x.slopes.items()}, x.lane)
-
-    def absolute(self, x: Any) -> Number:
-        """|x|."""
-        x = self.of(x)
-        sign = np.where(x.value < 0.0, -1.0, 1.0)
-        sure = np.abs(x.value) >= x.deviation
-        error = np.where(sure, x.error, x.deviation)
-        return Number(
-            self, np.abs(x.value), error, {k: np.where(sure, sign * s, 0.0) for k, s in x.slopes.items()}, x.lane
-        )
-
-    def negative(self, x: Any) -> Number:
-        """-x."""
-        x = self.of(x)
-        return Number(self, -x.value, x.error, {k: -s for k, s in x.slopes.items()}, x.lane)
-
-    def where(self, condition: Any, a: Any, b: Any) -> Number:
-        """One or the other; the condition is decided."""
-        a, b = self.of(a), self.of(b)
-        lane = self.lane(a, b)
-        if isinstance(condition, Truth):
-            lane, condition = lane if lane is not None else condition.lane, condition.decided()
-        slopes = {k: np.where(condition, s, t) for k, s, t in self.pairs(a, b)}
-        return Number(self, np.where(condition, a.value, b.value), np.where(condition, a.error, b.error), slopes, lane)
-
-    def least(self, a: Any, b: Any) -> Number:
-        """The smaller of two: one of them where that is certain, else all between the ends."""
-        a, b = self.of(a), self.of(b)
-        first, second = a.high <= b.low, b.high <= a.low
-        value = np.minimum(a.value, b.value)
-        low, high = np.minimum(a.low, b.low), np.minimum(a.high, b.high)
-        with np.errstate(invalid="ignore"):
-            error = np.where(low == high, 0.0, np.maximum(high - value, value - low))
-        return self.where(first, a, self.where(second, b, Number(self, value, error, {}, self.lane(a, b))))
-
-    def greatest(self, a: Any, b: Any) -> Number:
-        """The larger of two."""
-        return self.negative(self.least(self.negative(a), self.negative(b)))
-
-    def first_least(self, numbers: Sequence[Number]) -> Ints:
-        """Which is the least, of equal ones the first: decided, one against the least of those before."""
-        best, at = numbers[0], np.zeros(numbers[0].shape, np.int64)
-        for k, x in enumerate(numbers[1:], 1):
-            less = (x < best).decided()
-            best, at = self.where(less, x, best), np.where(less, k, at)
-        return at
-
-    def whole(self, x: Any) -> Any:
-        """floor(x): decided, one border at a time."""
-        x = self.of(x)
-        low, high = np.floor(x.low), np.floor(x.high)
-        far = ~(high - low <= 4.0)
-        low, high = (np.where(far, np.floor(np.nan_to_num(x.value)), end) for end in (low, high))
-        if far.any() and x.lane is not None:
-            self.lost[x.lane[far]] = True
-        while (low < high).any():
-            stays = Truth(self, np.ones(low.shape, np.bool_), low == high, x.lane).decided()
-            high = np.where(stays, high, high - 1.0)
-            low = np.where(stays, np.maximum(low, high), low)
-        return high
-
     # --- The device's own parts ----------------------------------------------------------------------------------------
 
     def weight(self, fraction: Any) -> Number:
         """A bilinear weight, which may be off by less than a step."""
         x = self.of(fraction)
         return Number(self, x.value, x.error + self.device.weight_step, x.slopes, x.lane)
+
+    def filtered(self, mixed: Any, texels: Any) -> Any:
+        """A lerp of texels in floats: what filters do in bytes is known of the right filter as a whole."""
+        return mixed
 
     def depth(self, depth: Any) -> Number:
         """A window depth in the depth buffer."""
@@ -311,35 +204,6 @@ class Bounds(Decisions):
     def color(self, color: Any) -> Any:
         """A colour: bytes are judged where they are read."""
         return color
-
-    def constant(self, value: float, like: Any) -> Number:
-        """The same number for each row of `like`, in its lanes."""
-        like = self.of(like)
-        return Number(self, np.full(like.shape, value), np.zeros(like.shape), {}, like.lane)
-
-    # --- Rows ----------------------------------------------------------------------------------------------------------
-
-    def replaced(self, x: Any, where: Any, by: Any) -> Number:
-        """With other rows at some places."""
-        x, by = self.of(x), self.of(by)
-
-        def put(old: Any, new: Any) -> Any:
-            result = np.array(np.broadcast_to(old, x.shape))
-            result[where] = new
-            return result
-
-        slopes = {k: put(a, b) for k, a, b in self.pairs(x, by)}
-        return Number(self, put(x.value, by.value), put(x.error, by.error), slopes, x.lane)
-
-    def spread(self, x: Any, where: Any, count: int, nothing: float) -> Any:
-        """Rows at some of `count` places, `nothing` elsewhere; places are lanes. What is decided are arrays."""
-        if not isinstance(x, Number):
-            result = np.full(count, nothing, np.asarray(x).dtype)
-            result[where] = x
-            if result.dtype.kind in "ib":
-                return result
-        empty = Number(self, np.full(count, nothing), np.zeros(count), {}, np.arange(count))
-        return self.replaced(empty, where, x)
 
 
 def _is(x: Number, number: float) -> bool:

@@ -47,6 +47,8 @@ class Policy:
     """Fractional bits of bilinear weights; None: not rounded."""
     weight_rounding: str = "nearest"
     """nearest | down."""
+    filtered_bytes: bool = False
+    """A bilinear fetch from texels that are bytes gives bytes: each of its lerps is rounded to one."""
     subpixel_bits: int = 8
     """Fractional bits of window positions."""
     subpixel_rounding: str = "even"
@@ -240,6 +242,12 @@ class Arithmetic:
         return (np.floor(steps) if self.policy.weight_rounding == "down" else np.rint(steps)) / (
             2.0**self.policy.weight_bits
         )
+
+    def filtered(self, mixed: Floats, texels: Sequence[Floats]) -> Floats:
+        """A lerp of texels as the texture unit has it."""
+        if not self.policy.filtered_bytes or any((np.abs(255.0 * t - np.rint(255.0 * t)) > 1e-4).any() for t in texels):
+            return mixed
+        return self.number(np.rint(255.0 * mixed) / 255.0)
 
     def snap(self, window: ArrayLike) -> Floats:
         """A window position on the raster of subpixels."""

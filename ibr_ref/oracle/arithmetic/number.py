@@ -47,7 +47,7 @@ class Number(_Speaks):
     __array_priority__ = 1000
 
     def __init__(
-        self, ops: Bounds, value: Any, error: Any = 0.0, slopes: dict[str, Any] | None = None, lane: Any = None
+        self, ops: Any, value: Any, error: Any = 0.0, slopes: dict[str, Any] | None = None, lane: Any = None
     ) -> None:
         self.ops, self.value, self.lane = ops, np.asarray(value, np.float64), lane
         self.error, self.slopes = np.asarray(error, np.float64), slopes or {}
@@ -212,7 +212,7 @@ class Truth(_Speaks):
     __slots__ = ("lane", "margin", "may", "must", "ops", "outcome")
     dtype = np.dtype(np.bool_)
 
-    def __init__(self, ops: Bounds, may: Any, must: Any, lane: Any, margin: Any = None) -> None:
+    def __init__(self, ops: Any, may: Any, must: Any, lane: Any, margin: Any = None) -> None:
         self.ops, self.may, self.must, self.lane, self.margin = ops, np.asarray(may), np.asarray(must), lane, margin
         self.outcome: Any = None
 

@@ -20,7 +20,6 @@ from ibr_ref.oracle.files.problem import UnusableError, field_problem
 from ibr_ref.oracle.files.write import LARGEST_DOCUMENT
 from ibr_ref.oracle.schema import Document, adapter, build, describe_inputs, input_files
 from ibr_ref.oracle.schema.base import Inputs, Stored, StoredFile
-from ibr_ref.oracle.schema.stages import expected
 
 
 def load_case(folder: str | PathLike[str]) -> Case:
@@ -32,7 +31,7 @@ def load_case(folder: str | PathLike[str]) -> Case:
     1e-9 of the largest. Raises OSError or ValueError, one line that names the file, for anything else.
     """
     path = existing_folder(folder)
-    document, manifest = _documents(path)
+    document, manifest = documents(path)
     stored = _arrays(path, document, manifest)
     where = path / "case.json"
     with naming(where):
@@ -54,18 +53,8 @@ def _built(document: Document, stored: Stored) -> tuple[Case, Document, Inputs]:
         raise field_problem("scene", error) from None
 
 
-def changed_stages(case: Case, folder: str | PathLike[str]) -> list[str]:
-    """Expected arrays in the folder that this version of the reference draws differently, by name; renders the case.
-
-    Empty unless the folder was exported by another version, or arrays were exchanged together with their hashes.
-    """
-    document, manifest = _documents(existing_folder(folder))
-    now = {name: digest(array) for name, array in expected(case.frame).items()}
-    then = {stage.name: manifest.arrays[stage.file] for stage in document.expected}
-    return [name for name in {**then, **now} if now.get(name) != then.get(name)]
-
-
-def _documents(path: Path) -> tuple[Document, Manifest]:
+def documents(path: Path) -> tuple[Document, Manifest]:
+    """`case.json` and `manifest.json` of a folder, checked by their models, and that they name the same files."""
     data = small_file(path, "case.json", LARGEST_DOCUMENT)
     try:
         document = adapter().validate_json(data)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,28 +13,20 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
 from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.declaration import ANY, Declaration, declared, of_fields
 from ibr_ref.oracle.files.archive import member, opened
 from ibr_ref.oracle.files.content import content_problems
 from ibr_ref.oracle.files.folder import existing_folder, file_inside, small_file
 from ibr_ref.oracle.files.handed import Slots
 from ibr_ref.oracle.files.npy import read_array
 from ibr_ref.oracle.files.pictures import read_bytes
-from ibr_ref.oracle.files.problem import Problem, UnusableError, field_problem
-from ibr_ref.oracle.schema.base import Model
-from ibr_ref.oracle.schema.document import Profile, known_profile
+from ibr_ref.oracle.files.problem import Problem, UnusableError
 
 _LARGEST_NOTE = 2**16
+_NOTE = 'a JSON object, such as {"profile": "gl", "subpixel_bits": 4}'
 _UNREADABLE, _README = "what cannot be read", "a file as the case's README says"
-
-
-class PortFile(Model):
-    """`port.json`: what the port says of itself."""
-
-    profile: Profile | None = None
-    """The device profile that it claims; none: the tightest that explains it is looked for."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -47,8 +40,8 @@ class Submission:
     reference's types; an atlas as a tuple of pages."""
     problems: tuple[Problem, ...]
     """Any makes the verdict INCONCLUSIVE: files that cannot be used, an image that nothing was drawn into."""
-    profile: str | None
-    """The device profile that the port declares."""
+    declaration: Declaration
+    """What the port says of its device."""
 
     @property
     def usable(self) -> bool:
@@ -83,11 +76,11 @@ def submission_from_arrays(
     """The same of arrays in memory: NumPy's, and whatever has `__dlpack__` (in the CPU's memory) or `__array__`.
 
     stages: by name; of an atlas a sequence of pages, or "atlas.color.0" and so on. Any memory order will do. Raises
-    ValueError for an unknown profile.
+    ValueError for an unknown device.
     """
     collector = _Collector(case)
     if profile is not None:
-        collector.profile = known_profile(profile)
+        collector.declaration = declared(profile)
     for name, value in {"color": color, "depth": depth, **(stages or {})}.items():
         if value is not None:
             collector.add_value(str(name), value)
@@ -104,14 +97,14 @@ class _Collector:
         self.files: dict[str, str] = {}
         """Where each array came from."""
         self.problems: list[Problem] = []
-        self.profile: str | None = None
+        self.declaration = ANY
 
     def submission(self, source: str) -> Submission:
         handed, missing = self.slots.joined(self.arrays)
         self.problems += [Problem(name, "no such page", "all pages of an atlas, or none") for name in missing]
         if not self.problems:
             self.problems += content_problems(self.case, handed, self.files)
-        return Submission(source=source, handed=handed, problems=tuple(self.problems), profile=self.profile)
+        return Submission(source=source, handed=handed, problems=tuple(self.problems), declaration=self.declaration)
 
     def add_file(self, root: Path, name: str) -> None:
         """A file of the folder, if it is one that counts."""
@@ -151,10 +144,19 @@ class _Collector:
                 self._keep(slot.name, member(archive, info, slot, file), file)
 
     def _add_note(self, root: Path, name: str) -> None:
+        """{"profile": "gl", "subpixel_bits": 4}: all may be left out."""
         try:
-            self.profile = PortFile.model_validate_json(small_file(root, name, _LARGEST_NOTE, name)).profile
-        except ValidationError as error:
-            raise field_problem(name, error) from None
+            fields = json.loads(small_file(root, name, _LARGEST_NOTE, name))
+        except (ValueError, RecursionError):
+            raise UnusableError(name, "what is no JSON", _NOTE) from None
+        if not isinstance(fields, dict):
+            raise UnusableError(name, f"a {type(fields).__name__}", _NOTE)
+        try:
+            self.declaration = of_fields(fields)
+        except ValueError as error:
+            field, _, rest = str(error).partition(": found ")
+            found, _, allowed = rest.partition(", allowed: ")
+            raise UnusableError(f"{name}: {field}", found, allowed) from None
 
     def _keep(self, name: str, array: NDArray[Any], file: str) -> None:
         if name in self.arrays:

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from ibr_ref.contract import described, spelled
+from ibr_ref.oracle.declaration import NUMBERS as DECLARED
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.files.features import features
 from ibr_ref.oracle.files.fields import field_list, input_table
@@ -82,14 +83,18 @@ channel, which is not looked at. A picture of floats that are all k / 255 counts
 Every stage is judged on your own arrays of the stages before it, so hand in as many as you have: the verdict then names the
 first stage that is wrong. A decision (a comparison in the search, a depth test, an edge) may go either way where rounding on
 the device can turn it, and nowhere else. `port.json` may declare the device, `{"profile": "vulkan"}`, one of
-NAMES, from the tightest to the loosest; without, the tightest one that explains everything is
-looked for.""".replace("NAMES", ", ".join(PROFILES))
+NAMES, from the tightest to the loosest, and what it is asked for besides, such as
+`{"profile": "gl", "subpixel_bits": 4}`: NUMBERS. Without, the tightest one that explains
+everything is looked for.""".replace("NAMES", ", ".join(PROFILES)).replace("NUMBERS", ", ".join(DECLARED))
 
 
 _JUDGED_ON = """An array is judged on those of yours that it is computed from; one that you do not hand in is made of what it
 reads in turn, and at last of the case. Normals and the nine maps, which a case hands over, you may also make yourself and go
 on with, if you hand them in, beside a picture too: without them it is judged with those of the case. No case depends on what
-the APIs leave undefined, such as pow(0, 0) or normalize(0)."""
+the APIs leave undefined, such as pow(0, 0) or normalize(0).
+
+To try one stage alone, before the others are written, feed it with the arrays of `expected/` that it is judged on, draw, and
+hand in its arrays and those: they are right, so that the verdict is on your stage."""
 
 
 def _expected(document: Document) -> str:

@@ -34,7 +34,7 @@ def export(case: Case, folder: str | PathLike[str], *, force: bool = False) -> N
     written down.
     """
     path = Path(folder)
-    _check_replaceable(path, case.name, force)
+    check_replaceable(path, case.name, force=force)
     try:
         document, inputs = describe(case)
     except ValidationError as error:
@@ -43,7 +43,8 @@ def export(case: Case, folder: str | PathLike[str], *, force: bool = False) -> N
         _write(made, case, document, inputs)
 
 
-def _check_replaceable(path: Path, name: str, force: bool) -> None:
+def check_replaceable(path: Path, name: str, *, force: bool = False) -> None:
+    """Raise OSError where `export` may not write a case of that name."""
     try:
         present = sorted(entry.name for entry in path.iterdir())
     except FileNotFoundError:

@@ -6,7 +6,7 @@ from functools import reduce
 
 import numpy as np
 
-from ibr_ref.oracle.accept.fetch import FILTER_ROUNDINGS, Texture, lerp, spread_around
+from ibr_ref.oracle.accept.fetch import Texture, filter_error, lerp, spread_around
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.number import Ints, Number
 from ibr_ref.oracle.device import UNIT
@@ -37,8 +37,7 @@ def fetch(ops: Bounds, texture: Texture, x: Number, y: Number) -> Number:
         largest[cut] = texture.largest
         for s in slopes.values():
             s[cut] = 0.0
-    rounding = FILTER_ROUNDINGS * ops.device.operation * UNIT * largest
-    return Number(ops, value, error + rounding, slopes, ops.lane(x, y))
+    return Number(ops, value, error + filter_error(texture, ops.device, largest), slopes, ops.lane(x, y))
 
 
 def below_highest(ops: Bounds, texture: Texture, u: Number, v: Number, h: Number) -> Ints:
@@ -51,6 +50,6 @@ def below_highest(ops: Bounds, texture: Texture, u: Number, v: Number, h: Number
         texels.append(np.floor(np.clip(np.nan_to_num(x), -1e9, 1e9)).astype(np.int64))
     # A fetch at x takes the texels floor(x - 0.5) and the next one, so those within 1 of floor(x); off by one, within 2.
     most = Texture(texture.extremes(2)[1], texture.repeat).at(texels[1], texels[0])
-    most = most + FILTER_ROUNDINGS * ops.device.operation * UNIT * texture.largest
+    most = most + filter_error(texture, ops.device, texture.largest)
     with np.errstate(invalid="ignore"):
         return np.flatnonzero(~(sure & (h.low > most)))

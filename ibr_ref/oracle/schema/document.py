@@ -14,7 +14,7 @@ from pydantic import AfterValidator, Field, TypeAdapter
 import ibr_ref
 from ibr_ref import methods
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.device import PROFILES, profile_of
 from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Model, Stored
 from ibr_ref.oracle.schema.conventions import CONVENTIONS
 from ibr_ref.oracle.schema.stages import StageFile, describe_stages
@@ -43,7 +43,7 @@ class Document(Model):
     """Name and version of what wrote the file."""
     name: str = Field(pattern=PLAIN_NAME)
     """Of the case, and by custom of its folder."""
-    kind: Literal["easy", "typical", "adversarial", "real-sized"]
+    kind: Literal["easy", "typical", "adversarial", "real-sized", "own"]
     about: str
     """What it tries."""
     profile: Profile
@@ -129,7 +129,7 @@ def describe_inputs(case: Case) -> tuple[Document, Inputs]:
         "name": case.name,
         "kind": case.kind,
         "about": case.about,
-        "profile": case.profile,
+        "profile": case.profile or profile_of(case.undecided),
         "conventions": CONVENTIONS,
         "expected": (),
         "method": case.method,

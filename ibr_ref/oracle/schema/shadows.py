@@ -195,7 +195,9 @@ def _maps(scene: shadows.Scene, params: shadows.Params, maps: Any, inputs: Input
             raise checks.reject('inputs["maps"]', type(maps).__name__, f"none with method={params.method!r}")
         return None
     if not isinstance(maps, shadows.Maps):
-        raise checks.reject('inputs["maps"]', type(maps).__name__, 'shadows.Maps with method="warp"')
+        raise checks.reject(
+            'inputs["maps"]', type(maps).__name__, 'shadows.Maps, of shadows.prepare, with method="warp"'
+        )
     texels = "counts of covered samples, 0 to k^2: coverage is count / k^2"
     controls = "[j, i, row, column] = (u, v) in [0, 1]^2 of map [j, i]"
     depths = depths_of(scene, params, maps.positions)

@@ -61,7 +61,7 @@ def test_hits_shades_and_colours(port: Port) -> None:
     assert near(values(hits.hit), port.floats("march.hit")[hits.pixel])
     before = abs(hits.height_before.value - port.floats("march.height_before")[hits.pixel]) <= ROUNDING
     assert set(hits.pixel[before]) == set(hits.pixel)
-    hits = shade_input(port, hits)
+    hits = shade_input(port, hits, lambda: points)
     shades, lost = shades_of(model, hits)
     assert not len(lost)
     same = port.agreement("shade.lit", shades.pixel, shades.lit)

@@ -10,6 +10,7 @@ from itertools import cycle
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.declaration import device_of
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.programs.displacement.variants import VARIANTS
@@ -23,10 +24,11 @@ from tests.oracle.displacement.drawn import REFEREE, SMALL, case, draw, image, p
 def test_variants_pass(variant: Variant, name: str) -> None:
     """With their tightest profile stage by stage, and by their pictures; every third by the loosest's as well."""
     arrays = draw(name, variant.policy, variant.port)
-    found = wrong(REFEREE.judge_stages(case(name), PROFILES[variant.profile], arrays))
-    loosest = profiles_from(variant.profile)[-1] if VARIANTS.index(variant) % 3 == 0 else variant.profile
-    for profile in {variant.profile, loosest}:
-        found += wrong([REFEREE.judge_image(case(name), PROFILES[profile], image(arrays))])
+    found = wrong(REFEREE.judge_stages(case(name), device_of(variant.profile), arrays))
+    profile, *numbers = variant.profile.split(",")
+    loosest = profiles_from(profile)[-1] if VARIANTS.index(variant) % 3 == 0 else profile
+    for each in {profile, loosest}:
+        found += wrong([REFEREE.judge_image(case(name), device_of(",".join([each, *numbers])), image(arrays))])
     assert not found
 
 

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 from ibr_ref import shadows
 from ibr_ref.scene import Camera, Mesh
 from ibr_ref.shadows import AreaLight, Maps, Params, Scene
+from ibr_ref.testing.shadows import unfolded_controls
 from tests.shadows.golden_scenes import painted
 from tests.shadows.scenes import ball, box, plate
-from tests.shadows.strategies import unfolded_controls
 
 WIDTH, HEIGHT, SIZE = 96, 72, 64
 

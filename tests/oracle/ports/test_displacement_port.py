@@ -10,9 +10,11 @@ from ibr_ref import displacement
 from ibr_ref.displacement import Params, Scene
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.programs.displacement import Port
+from ibr_ref.testing.displacement import REGIONS
+from ibr_ref.testing.displacement import Drawn as Case
+from ibr_ref.testing.displacement import drawn as cases
 from tests import drawn
 from tests.agreement import arrays_of
-from tests.displacement.strategies import REGIONS, Case, cases
 from tests.oracle.ports.displacement_scenes import SCENES
 
 DOUBLE = Policy(float_bits=64)

@@ -13,9 +13,10 @@ from ibr_ref import Light, splatting
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.faults.kinds import Mutant, Variant
 from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port, raster
+from ibr_ref.testing.splatting import Drawn as Case
+from ibr_ref.testing.splatting import drawn as cases
 from tests.oracle.ports.splatting_scenes import SCENES
 from tests.splatting import golden_scenes
-from tests.splatting.strategies import Case, cases
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 
@@ -141,7 +142,11 @@ def of_a_code(light: Light) -> float:
     return float(turn * (light.diffuse + 2.0 * light.specular * np.sqrt(light.exponent)))
 
 
-@pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.name)
+DESKTOPS = [variant for variant in VARIANTS if "," not in variant.profile]
+"""Not those of a raster 16 times as coarse, or of bytes in place of floats, which are as right and farther away."""
+
+
+@pytest.mark.parametrize("variant", DESKTOPS, ids=lambda v: v.name)
 def test_variants_stay_near(variant: Variant) -> None:
     """Far apart from what a mutant does: a hundred times the rounding of float32; few pixels have another winner."""
     bounds = {"vertex.window": 2e-3, "vertex.depth": 1e-5, "vertex.width": 1e-4, "vertex.color": 1e-4, "color": 1 / 509}
@@ -177,7 +182,7 @@ def test_there_are_enough() -> None:
     assert len({variant.name for variant in VARIANTS}) == len(VARIANTS) >= 12
     assert len({mutant.name for mutant in MUTANTS}) == len(MUTANTS) >= 44
     assert 3 * sum(mutant.small for mutant in MUTANTS) >= len(MUTANTS)
-    assert {variant.profile for variant in VARIANTS} <= {"ieee32", "vulkan", "d3d11", "webgpu", "gl"}
+    assert {variant.profile.partition(",")[0] for variant in VARIANTS} <= {"ieee32", "vulkan", "d3d11", "webgpu", "gl"}
     assert {mutant.stage for mutant in MUTANTS} == {"normals", "atlas", "vertex", "raster", "resolve"}
 
 

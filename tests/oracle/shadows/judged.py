@@ -8,7 +8,7 @@ from typing import Any
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.shadows import CASES
-from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.declaration import device_of
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.ports.shadows import Port
 from ibr_ref.oracle.referees.shadows import ShadowsReferee
@@ -49,8 +49,8 @@ def plain(name: str) -> Arrays:
 
 
 def stages(name: str, handed: Arrays, profile: str | None = None) -> list[Judgement]:
-    return REFEREE.judge_stages(case(name), PROFILES[profile or case(name).profile], handed)
+    return REFEREE.judge_stages(case(name), device_of(profile or case(name).profile), handed)
 
 
 def image(name: str, handed: Arrays, profile: str | None = None) -> Judgement:
-    return REFEREE.judge_image(case(name), PROFILES[profile or case(name).profile], handed)
+    return REFEREE.judge_image(case(name), device_of(profile or case(name).profile), handed)

@@ -9,7 +9,7 @@ from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.splatting import CASES
-from ibr_ref.oracle.device import PROFILES
+from ibr_ref.oracle.declaration import device_of
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.ports.splatting import Port
 from ibr_ref.oracle.referees.splatting import SplattingReferee
@@ -42,8 +42,8 @@ def drawn(name: str, policy: Policy = Policy(), port: Any = Port) -> Arrays:  # 
 
 
 def stages(name: str, handed: Arrays, profile: str | None = None) -> list[Judgement]:
-    return REFEREE.judge_stages(case(name), PROFILES[profile or case(name).profile], handed)
+    return REFEREE.judge_stages(case(name), device_of(profile or case(name).profile), handed)
 
 
 def image(name: str, handed: Arrays, profile: str | None = None) -> Judgement:
-    return REFEREE.judge_image(case(name), PROFILES[profile or case(name).profile], handed)
+    return REFEREE.judge_image(case(name), device_of(profile or case(name).profile), handed)

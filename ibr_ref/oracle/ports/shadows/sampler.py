@@ -47,8 +47,8 @@ class Sampler:
 
     def mix(self, texels: list[Floats], fx: Floats, fy: Floats) -> Floats:
         """Of four texels by their weights."""
-        upper, lower = self.ops.lerp(texels[0], texels[1], fx), self.ops.lerp(texels[2], texels[3], fx)
-        return self.ops.lerp(upper, lower, fy)
+        upper, lower = (self.ops.filtered(self.ops.lerp(texels[k], texels[k + 1], fx), texels) for k in (0, 2))
+        return self.ops.filtered(self.ops.lerp(upper, lower, fy), texels)
 
     def bilinear(self, image: Floats, u: Floats, v: Floats) -> Floats:
         """The mix of the four texels around."""

@@ -53,6 +53,8 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("reciprocals", Policy(reciprocal=True), "vulkan"),
     Variant("loose-quotients-1", Policy(loose=2, seed=1), "vulkan"),
     Variant("loose-quotients-2", Policy(loose=2, seed=2), "vulkan"),
+    Variant("4-subpixel-bits", Policy(subpixel_bits=4), "gl,subpixel_bits=4"),
+    Variant("4-subpixel-bits-truncated", Policy(subpixel_bits=4, subpixel_rounding="down"), "gl,subpixel_bits=4"),
     Variant("subpixels-up", Policy(subpixel_rounding="up"), "vulkan"),
     Variant("subpixels-truncated", Policy(subpixel_rounding="down"), "vulkan"),
     Variant("quads", _FLOAT32, "vulkan", with_stage(orders.Quads)),

@@ -183,6 +183,8 @@ class Raster(Case):
         if self.do.policy.snapped_varyings and self.varying_centre() == self.centre():
             return [self.do.number(edge) for edge in edges]
         x, y = window
+        if self.do.policy.snapped_varyings:
+            x, y = (self.snapped(c) / self.subpixels() for c in window)
         px, py = column + self.varying_centre(), row + self.varying_centre()
         weights = []
         for a, b in ((1, 2), (2, 0), (0, 1)):

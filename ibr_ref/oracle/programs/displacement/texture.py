@@ -54,7 +54,8 @@ class TextureUnit(Case):
     def bilinear(self, texels: tuple[Floats, Floats, Floats, Floats], fx: Floats, fy: Floats) -> Floats:
         """The mean of four texels: t00, t10, t01, t11, tXY with X to the right and Y down."""
         t00, t10, t01, t11 = texels
-        return self.lerp(self.lerp(t00, t10, fx), self.lerp(t01, t11, fx), fy)
+        upper, lower = (self.do.filtered(self.lerp(a, b, fx), texels) for a, b in ((t00, t10), (t01, t11)))
+        return self.do.filtered(self.lerp(upper, lower, fy), texels)
 
     def lerp(self, a: Floats, b: Floats, f: Floats) -> Floats:
         """A (1 - f) + b f."""

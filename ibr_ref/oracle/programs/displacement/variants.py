@@ -134,6 +134,13 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("8-bit weights, truncated", Policy(weight_bits=8, weight_rounding="down"), "vulkan"),
     Variant("subpixel ties up", Policy(subpixel_rounding="up"), "vulkan"),
     Variant("subpixels truncated", Policy(subpixel_rounding="down"), "vulkan"),
+    Variant("4 subpixel bits", Policy(subpixel_bits=4), "gl,subpixel_bits=4"),
+    Variant(
+        "4 subpixel bits, truncated, unsnapped",
+        Policy(subpixel_bits=4, subpixel_rounding="down", snapped_varyings=False, weight_bits=8),
+        "gl,subpixel_bits=4",
+    ),
+    Variant("bytes filtered in bytes", Policy(filtered_bytes=True, weight_bits=8), "gl,filter_result=unorm8"),
     Variant("truncated", Policy(truncated=True), "d3d11"),
     Variant("truncated, fused, 8-bit weights", Policy(truncated=True, fused=True, weight_bits=8), "d3d11"),
     Variant("8-bit weights, rounded", Policy(weight_bits=8), "d3d11"),

@@ -71,11 +71,12 @@ class Search:
     shown: Shown
     accepted: Bools
     undecided: Bools
-    bright: Bools = field(init=False)
-    """Some outcome has the colour, whatever its depth: where none is accepted, depth is to blame."""
+    deep: Bools = field(init=False)
+    """Some outcome has the depth, whatever its colour: where none is accepted, colour is to blame."""
 
     def __post_init__(self) -> None:
-        self.bright = np.zeros_like(self.accepted)
+        depth = self.shown.depth
+        self.deep = np.ones_like(self.accepted) if depth is None else self.picture.winners.empty & (depth == 1.0)
 
     def run(self, among: Bools | None = None) -> None:
         """Box by box, for the pixels `among`."""
@@ -122,17 +123,17 @@ class Search:
         """Whether outcomes may be the port's, how far they are from planes, and what of the box is left, in [-1, 1]."""
         shown, pixel = self.shown, looks.pixel
         tests = [(x, shown.color[pixel, k], shown.slack, FLAT) for k, x in enumerate(looks.color)]
-        colors = len(tests)
         if shown.depth is not None:
             tests.append((looks.depth, shown.depth[pixel], 0.0, DEEP))
         low, high = np.full((len(pixel), 2), -1.0), np.full((len(pixel), 2), 1.0)
         good, away = np.ones(len(pixel), np.bool_), np.zeros(len(pixel))
         with np.errstate(all="ignore"):
-            for number, (x, found, slack, step) in enumerate(tests):
-                good &= np.abs(found - x.value) <= x.deviation + slack
+            for x, found, slack, step in tests:
+                near = np.abs(found - x.value) <= x.deviation + slack
+                good &= near
                 away = np.fmax(away, x.error / step)
-                if number == colors - 1:
-                    self.bright[pixel[good]] = True
+            if shown.depth is not None:
+                self.deep[pixel[near]] = True
             for _ in range(4):
                 for x, found, slack, _ in tests:
                     _narrow(x, found, slack, low, high)
@@ -177,8 +178,7 @@ def judge_image(case: Case, device: Device, handed: Handed, kind: type[Program] 
     picture = picture_of(case, device, kind)
     search = searched(picture, Shown.of(picture, handed))
     names = ("depth", "color") if "depth" in handed else ("color",)
-    # Depth is what disagrees where an outcome has the colour.
-    blame = np.where(search.accepted, -1, np.where(search.bright | ("depth" not in handed), 0, len(names) - 1))
+    blame = np.where(search.accepted, -1, np.where(search.deep, len(names) - 1, 0))
     shape = case.frame.depth.shape
     return Judgement(
         stage="image",

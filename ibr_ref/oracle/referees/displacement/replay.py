@@ -6,6 +6,7 @@ port's arrays fit stay, with the port's numbers in place of theirs.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -213,11 +214,14 @@ def not_covered(candidates: Points, pixels: int) -> Bools:
     return result
 
 
-def shade_input(port: Port, hits: Hits | None) -> Hits:
-    """The hits that the port shaded; the program's outcomes are needed where the port's are not all there."""
+def shade_input(port: Port, hits: Hits | None, candidates: Callable[[], Points]) -> Hits:
+    """The hits that the port shaded; the program's outcomes are needed where the port's are not all there.
+
+    candidates: those of the port's vertices, where faces' depths hang on them.
+    """
     names = port.names("march")
     if port.whole_hits:
-        return _ports_hits(port)
+        return _ports_hits(port, candidates)
     assert hits is not None
     agrees = np.ones(len(hits), np.bool_)
     for name in names:
@@ -231,7 +235,7 @@ def march_field(hits: Hits, name: str) -> Any:
     return getattr(hits, name.partition(".")[2])
 
 
-def _ports_hits(port: Port) -> Hits:
+def _ports_hits(port: Port, candidates: Callable[[], Points]) -> Hits:
     index, point = port.ints("march.hit_index"), port.floats("march.hit")
     several = "raster.patch_id" in port.handed
     polygon = port.polygon() if several else np.zeros(port.pixels, np.int64)
@@ -242,7 +246,7 @@ def _ports_hits(port: Port) -> Hits:
     none = Number(port.model.machine, np.zeros(count))
     face_depth = none
     if not port.model.program.right("window_depth") or port.case.params.depth == "polygon":
-        face_depth = _face_depth(port.own_points, pixel, polygon[pixel], None)
+        face_depth = _face_depth(candidates(), pixel, polygon[pixel], None)
     return _at(
         port,
         Hits(

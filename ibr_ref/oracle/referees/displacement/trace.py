@@ -48,7 +48,7 @@ def trace(case: Case, device: Device, handed: Handed, stage: str, index: tuple[i
     march += [*_outcomes(port, pixel, hits), *element.march(hits)]
     if stage == "march":
         return march
-    hits = shade_input(port, hits)
+    hits = shade_input(port, hits, lambda: candidates)
     hits = hits.take(hits.pixel == pixel)
     shade = list(_shade(port, pixel, hits))
     looks = element.shade(hits)

@@ -234,7 +234,7 @@ def _four(texels: Map, sides: _Sides, at: Coordinate) -> tuple[Bounded, Bounded,
     for axis in (at.s, at.t):
         wide |= axis.error * size + device.weight_step >= 0.5  # more than one border may cut the box
     other[0, wide], other[1, wide], open_[wide] = 0.0, 1.0, True
-    rounding = FILTER_ROUNDINGS * device.operation * UNIT
+    rounding = FILTER_ROUNDINGS * device.operation * UNIT + device.filter_step  # comparisons are 0 or 1: bytes
     mixed = Bounded(value, np.maximum(first[1] - value, value - first[0]), device)
     return mixed.widened(rounding), centered(other[0], other[1], device).widened(rounding), open_
 

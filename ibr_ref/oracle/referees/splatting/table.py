@@ -132,5 +132,5 @@ def _fetched(pages: Any, rects: Ints, places: list[tuple[Ints, ...]]) -> tuple[N
             inside = (place[0] < found.shape[0]) & (place[1] < found.shape[1])
             texels[inside] = found[place[0][inside], place[1][inside]]
         parts.append(texels)
-        there.append(np.isfinite(texels).reshape(len(texels), -1).all(axis=1))
+        there.append(np.isfinite(texels).all(axis=tuple(range(1, texels.ndim))))
     return np.concatenate(parts), np.concatenate(there)

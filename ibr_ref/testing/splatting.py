@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from ibr_ref.scene import Camera, DepthImage, Light
 from ibr_ref.splatting import Params, Scene
-from tests.drawn import real
+from ibr_ref.testing.numbers import real
 
 
 @dataclass(frozen=True)
-class Case:
+class Drawn:
     """What one frame is rendered from."""
 
     scene: Scene
@@ -52,7 +52,7 @@ def cameras(draw: DrawFn, width: int, height: int, low: float = 2.0, high: float
     eye = draw(eyes(low, high))
     kind = draw(st.sampled_from(["perspective", "perspective", "orthographic", "axis-angle", "calibrated"]))
     near = draw(real(0.05, 3.0, 0.05, 2.0))
-    planes = {"near": near, "far": near + draw(real(0.5, 8.0, 8.0, 1.0))}
+    planes: dict[str, Any] = {"near": near, "far": near + draw(real(0.5, 8.0, 8.0, 1.0))}
     if kind == "axis-angle":
         flat = draw(st.booleans())
         return Camera.axis_angle(
@@ -110,7 +110,7 @@ def lights() -> SearchStrategy[Light | None]:
 
 
 @st.composite
-def laws(draw: DrawFn) -> dict[str, float]:
+def laws(draw: DrawFn) -> dict[str, Any]:
     """Constant widths from below a pixel to hundreds of them, and laws that fall with the distance, clamped or not."""
     if draw(st.booleans()):
         width = draw(real(0.25, 12.0, 1.0, 2.0, 0.5, 300.0))
@@ -127,7 +127,7 @@ def laws(draw: DrawFn) -> dict[str, float]:
 
 
 @st.composite
-def cases(draw: DrawFn) -> Case:
+def drawn(draw: DrawFn) -> Drawn:
     """One to three reference images before a camera of a few pixels."""
     images = draw(st.lists(depth_images(), min_size=1, max_size=3))
     if len(images) > 1 and draw(st.booleans()):
@@ -143,4 +143,4 @@ def cases(draw: DrawFn) -> Case:
         draw(st.sampled_from(["square", "square", "disc"])),
         draw(st.sampled_from([widest, widest + 1, 4096])),
     )
-    return Case(scene, Params(**draw(laws()), shape=shape, max_atlas_size=limit))
+    return Drawn(scene, Params(**draw(laws()), shape=shape, max_atlas_size=limit))

@@ -1,0 +1,104 @@
+"""Options of commands that read and write depth sets: those of `io.read_depth_set`, under its names."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ibr_ref.cli import options
+
+
+class Format(StrEnum):
+    """Form of a folder of pictures with depth."""
+
+    auto = "auto"
+    open3d = "open3d"
+    tum = "tum"
+    scannet = "scannet"
+    transforms = "transforms"
+    colmap = "colmap"
+    middlebury = "middlebury"
+    folder = "folder"
+
+
+class Convention(StrEnum):
+    """Axes of cameras."""
+
+    opencv = "opencv"
+    opengl = "opengl"
+
+
+class Poses(StrEnum):
+    """Direction of poses."""
+
+    camera_to_world = "camera_to_world"
+    world_to_camera = "world_to_camera"
+
+
+class Along(StrEnum):
+    """What depths are measured along."""
+
+    axis = "axis"
+    ray = "ray"
+
+
+class PixelCenters(StrEnum):
+    """Places of pixels' centres in the intrinsics."""
+
+    integer = "integer"
+    half = "half"
+
+
+Rgbd = Annotated[
+    Path | None, typer.Option(help="A folder of pictures with depth, intrinsics and poses: what `--format` lists.")
+]
+OfFormat = Annotated[
+    Format,
+    typer.Option("--format", help="--rgbd: its form (README.md in ibr_ref/io has a table); auto: told by its files."),
+]
+DepthScale = Annotated[
+    float | None,
+    typer.Option(
+        parser=options.number,
+        help="--rgbd: world units of a stored one, such as 0.001. Without, as with the next ones: what the format "
+        "says, or an error where it leaves that open.",
+    ),
+]
+OfConvention = Annotated[
+    Convention | None,
+    typer.Option(help="--rgbd: axes of cameras; opencv: +y down, looking down +z; opengl: +y up, looking down -z."),
+]
+OfPoses = Annotated[Poses | None, typer.Option(help="--rgbd: what the poses take to what.")]
+OfAlong = Annotated[
+    Along | None, typer.Option(help="--rgbd: depths along the axis of view, or along the ray from the eye.")
+]
+OfPixelCenters = Annotated[
+    PixelCenters | None, typer.Option(help="--rgbd: at which places the intrinsics have the centres of pixels.")
+]
+Intrinsics = Annotated[
+    options.Numbers | None,
+    typer.Option(
+        parser=options.intrinsics, metavar="FX,FY,CX,CY", help="--rgbd: pixels, of pictures whose files have none."
+    ),
+]
+MaxTimeGap = Annotated[
+    float | None,
+    typer.Option(parser=options.number, help="--rgbd: seconds, of what belongs together. Without: 0.02."),
+]
+Pose = Annotated[
+    options.Numbers | None,
+    typer.Option(
+        parser=options.pose,
+        metavar="M11,M12,..",
+        help="--rgbd: seen from there: 12 or 16 numbers, row by row, in the set's own axes and direction.",
+    ),
+]
+DepthSet = Annotated[Path | None, typer.Option(help="Also write the references, as a folder that --rgbd reads.")]
+OneDepthImage = Annotated[
+    Path | None,
+    typer.Option(help="Also write the picture with its depths, as a folder that `render splatting --rgbd` reads."),
+]
+PointCloud = Annotated[Path | None, typer.Option(help="Also write the points of the references, as a PLY file.")]

@@ -1,0 +1,194 @@
+"""`ibr-ref hunt`: a port's bugs, found with random cases."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ibr_ref import methods
+from ibr_ref.cli import options
+from ibr_ref.oracle.device import PROFILES
+from ibr_ref.progress import progress
+
+if TYPE_CHECKING:
+    from ibr_ref.testing import Bug, Found, Hunt, Program
+
+EXAMPLES = """
+Examples:
+
+    ibr-ref hunt --port "./my_port {case} {out}"
+
+    ibr-ref hunt --port "./my_port {case} {out}" --method displacement --device vulkan --seconds 60 --out bugs
+
+    ibr-ref check bugs/cases bugs/drawn
+
+Exit code 0: no bug is known in DIR, 1: some are, 2: an option or the port is unusable.
+"""
+
+_STATE = "hunt.json"
+
+
+def command(
+    port: Annotated[
+        str,
+        typer.Option(
+            help="Command with {case} and {out}: the folder that it reads, as `ibr-ref export` writes it, and "
+            "the one that it writes to."
+        ),
+    ],
+    method: Annotated[str | None, typer.Option(help=f"{' or '.join(methods.names())}. Without: all in turn.")] = None,
+    seconds: Annotated[
+        float,
+        typer.Option(
+            parser=options.number, help="How long new bugs are looked for; one more may be made smaller then."
+        ),
+    ] = 300.0,
+    seed: Annotated[int, typer.Option(parser=options.whole, help="Of the random cases.")] = 0,
+    out: Annotated[
+        Path,
+        typer.Option(
+            help="Folder for cases/, drawn/ and reports/ of what is found; a hunt that has one goes on there."
+        ),
+    ] = Path("hunt"),
+    device: Annotated[
+        str | None,
+        typer.Option(
+            help=f"Profile that the port declares: {', '.join(PROFILES)}. Without: port.json's, or the loosest."
+        ),
+    ] = None,
+) -> None:
+    """Look for a port's bugs with random cases, and make the first failure of each as small as it gets.
+
+    A bug is the first wrong stage and the first of its arrays that disagrees. Found ones are skipped from then on.
+    """
+    program, wanted = _checked(port, method, seconds, device)
+    folder = _Folder(out)
+    state = folder.state()
+    started, before = time.monotonic(), len(state.bugs)
+    from ibr_ref.testing import Hunt
+
+    with progress(1) as step:
+        step("hunting")
+
+        def told(hunt: Hunt) -> None:
+            passed = min(time.monotonic() - started, seconds)
+            step.within(f"{hunt.tried} cases, {len(hunt.known)} bugs", int(passed), int(seconds))
+
+        hunt = Hunt(
+            port=program, methods=wanted, device=device, seed=seed, database=folder.place / "examples",
+            known=set(state.bugs), rounds=state.rounds, told=told,
+        )  # fmt: skip
+        lines = [_line(found, folder.keep(found, program, device)) for found in _kept(hunt, seconds, folder)]
+    for line in lines:
+        typer.echo(line)
+    typer.echo(
+        f"{hunt.tried} cases in {time.monotonic() - started:.0f} s (seed {seed}, rounds {state.rounds} to {hunt.rounds}): "
+        f"{len(hunt.known) - before} new bugs, {before} known from before."
+    )
+    raise typer.Exit(1 if hunt.known else 0)
+
+
+def _checked(port: str, method: str | None, seconds: float, device: str | None) -> tuple[Program, tuple[str, ...]]:
+    """The port and the methods. Raises ValueError for what cannot be used, and where Hypothesis is missing."""
+    try:
+        import hypothesis  # noqa: F401
+    except ImportError:
+        raise ValueError('hunt needs Hypothesis, which is not installed: pip install "ibr_ref[hypothesis]"') from None
+    from ibr_ref.scene import checks
+    from ibr_ref.testing import Program
+
+    if method is not None:
+        checks.choice("method", method, methods.names())
+    if device is not None:
+        checks.choice("device", device, tuple(PROFILES))
+    checks.number("seconds", seconds, above=0.0)
+    return Program(port), methods.names() if method is None else (method,)
+
+
+def _kept(hunt: Hunt, seconds: float, folder: _Folder) -> Iterable[Found]:
+    """What it finds; how far it has come is written down after each, and at the end, however that comes."""
+    try:
+        for found in hunt.run(seconds):
+            yield found
+            folder.note(hunt)
+    finally:
+        folder.note(hunt)
+
+
+@dataclass(frozen=True)
+class _State:
+    """How far a hunt has come."""
+
+    bugs: tuple[Bug, ...] = ()
+    rounds: int = 0
+
+
+@dataclass(frozen=True)
+class _Folder:
+    """Where a hunt keeps what it has found."""
+
+    place: Path
+
+    def state(self) -> _State:
+        """Of the hunt before; makes the folder. Raises OSError and ValueError for one that is none of a hunt."""
+        from ibr_ref.io.outputs import make_folder
+        from ibr_ref.scene import checks
+        from ibr_ref.testing import Bug
+
+        make_folder(self.place)
+        path = self.place / _STATE
+        if not path.exists():
+            if any(self.place.iterdir()):
+                raise FileExistsError(
+                    f"{checks.named(self.place)}: holds other things, allowed: a new folder, or a hunt's"
+                )
+            return _State()
+        try:
+            fields: dict[str, Any] = json.loads(path.read_bytes())
+            bugs = tuple(Bug(*(str(bug[name]) for name in Bug._fields)) for bug in fields["bugs"])
+            return _State(bugs, int(fields["rounds"]))
+        except (ValueError, KeyError, TypeError):
+            raise ValueError(f"{checks.named(path)}: found what no hunt wrote, allowed: a hunt's {_STATE}") from None
+
+    def note(self, hunt: Hunt) -> None:
+        """Write down what is known."""
+        from ibr_ref.io.outputs import atomic
+
+        bugs = [bug._asdict() for bug in sorted(hunt.known)]
+        text = json.dumps({"seed": hunt.seed, "rounds": hunt.rounds, "bugs": bugs}, indent=1)
+        with atomic(self.place / _STATE) as file:
+            file.write(text.encode() + b"\n")
+
+    def keep(self, found: Found, program: Program, device: str | None) -> str:
+        """Write case, drawing and report; the first line of the verdict."""
+        from ibr_ref import oracle
+        from ibr_ref.io.outputs import make_folder
+        from ibr_ref.testing import PortError
+
+        name = found.bug.name
+        about = f"{found.case.about} ibr-ref hunt, seed {found.seed}: {found.bug.array} of {found.bug.stage}."
+        case = replace(found.case, name=name, about=about)
+        folder, drawn = self.place / "cases" / name, make_folder(self.place / "drawn" / name)
+        oracle.export(case, folder, force=True)
+        try:
+            program.draw(folder.resolve(), drawn.resolve())
+        except PortError as error:
+            return f"{name}: {error}"
+        submission = oracle.load_submission(drawn, case)
+        problems = [str(problem) for problem in submission.problems]
+        examination = oracle.examine(
+            case, submission.handed, profile=device or submission.declaration, problems=problems
+        )
+        oracle.write_report(examination, make_folder(self.place / "reports") / f"{name}.html")
+        return examination.verdict.words().partition("\n")[0]
+
+
+def _line(found: Found, verdict: str) -> str:
+    camera = found.case.scene.camera
+    return f"{verdict} {camera.width} x {camera.height} pixels, after {found.after} cases."

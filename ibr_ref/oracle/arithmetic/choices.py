@@ -1,0 +1,154 @@
+"""What is known of numbers besides arithmetic: their ends, which of two they are, and the other legal forms of a formula."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from ibr_ref.oracle.arithmetic.decisions import Decisions
+from ibr_ref.oracle.arithmetic.number import Ints, Number, Truth
+
+
+class Choices(Decisions):
+    """Numbers chosen, replaced, and kept within what is known of them: nothing here rounds."""
+
+    def of(self, x: Any) -> Number:
+        """Any number as a `Number`."""
+        return x if isinstance(x, Number) else Number(self, x)
+
+    def negative(self, x: Any) -> Number:
+        """-x."""
+        x = self.of(x)
+        return Number(self, -x.value, x.error, {k: -s for k, s in x.slopes.items()}, x.lane)
+
+    def absolute(self, x: Any) -> Number:
+        """|x|."""
+        x = self.of(x)
+        sign = np.where(x.value < 0.0, -1.0, 1.0)
+        sure = np.abs(x.value) >= x.deviation
+        error = np.where(sure, x.error, x.deviation)
+        return Number(
+            self, np.abs(x.value), error, {k: np.where(sure, sign * s, 0.0) for k, s in x.slopes.items()}, x.lane
+        )
+
+    def rising(self, f: Callable[[Any], Any], x: Any) -> Number:
+        """A function that nowhere falls: x where it changes nothing, else all between its ends, the value in the middle."""
+        x = self.of(x)
+        value, low, high = f(x.value), f(x.low), f(x.high)
+        same = (low == x.low) & (high == x.high) & (value == x.value)
+        with np.errstate(invalid="ignore"):
+            middle = 0.5 * (low + high)
+            half = np.maximum(high - middle, middle - low)
+            for _ in range(2):  # both ends are reached: 1 where a colour is clamped to it
+                half = np.where((middle + half < high) | (middle - half > low), np.nextafter(half, np.inf), half)
+        bounded = np.isfinite(middle)
+        value = np.where(same | ~bounded, value, middle)
+        error = np.where(same, x.error, np.where(bounded, half, np.inf))
+        return Number(self, value, error, {k: np.where(same, s, 0.0) for k, s in x.slopes.items()}, x.lane)
+
+    def where(self, condition: Any, a: Any, b: Any) -> Number:
+        """One or the other; the condition is decided."""
+        a, b = self.of(a), self.of(b)
+        lane = self.lane(a, b)
+        if isinstance(condition, Truth):
+            lane, condition = lane if lane is not None else condition.lane, condition.decided()
+        slopes = {k: np.where(condition, s, t) for k, s, t in self.pairs(a, b)}
+        return Number(self, np.where(condition, a.value, b.value), np.where(condition, a.error, b.error), slopes, lane)
+
+    def least(self, a: Any, b: Any) -> Number:
+        """The smaller of two: one of them where that is certain, else all between the ends."""
+        a, b = self.of(a), self.of(b)
+        first, second = a.high <= b.low, b.high <= a.low
+        value = np.minimum(a.value, b.value)
+        low, high = np.minimum(a.low, b.low), np.minimum(a.high, b.high)
+        with np.errstate(invalid="ignore"):
+            error = np.where(low == high, 0.0, np.maximum(high - value, value - low))
+        return self.where(first, a, self.where(second, b, Number(self, value, error, {}, self.lane(a, b))))
+
+    def greatest(self, a: Any, b: Any) -> Number:
+        """The larger of two."""
+        return self.negative(self.least(self.negative(a), self.negative(b)))
+
+    def first_least(self, numbers: Sequence[Number]) -> Ints:
+        """Which is the least, of equal ones the first: decided, one against the least of those before."""
+        best, at = numbers[0], np.zeros(numbers[0].shape, np.int64)
+        for k, x in enumerate(numbers[1:], 1):
+            less = (x < best).decided()
+            best, at = self.where(less, x, best), np.where(less, k, at)
+        return at
+
+    def whole(self, x: Any) -> Any:
+        """floor(x): decided, one border at a time."""
+        x = self.of(x)
+        low, high = np.floor(x.low), np.floor(x.high)
+        far = ~(high - low <= 4.0)
+        low, high = (np.where(far, np.floor(np.nan_to_num(x.value)), end) for end in (low, high))
+        if far.any() and x.lane is not None:
+            self.lost[x.lane[far]] = True
+        while (low < high).any():
+            stays = Truth(self, np.ones(low.shape, np.bool_), low == high, x.lane).decided()
+            high = np.where(stays, high, high - 1.0)
+            low = np.where(stays, np.maximum(low, high), low)
+        return high
+
+    def either(self, first: Any, *others: Callable[[], Any]) -> Any:
+        """A formula's other legal forms beside it; of vectors, of each component."""
+        for other in others:
+            again = other()
+            if isinstance(first, (list, tuple)):
+                first = [self.alternatives(self.of(x), self.of(y)) for x, y in zip(first, again, strict=True)]
+            else:
+                first = self.alternatives(self.of(first), self.of(again))
+        return first
+
+    def alternatives(self, f: Number, g: Number) -> Number:
+        """Two legal forms of one thing: the first one's value, and an error that covers both."""
+        away = g.plus(f, -1.0)
+        spread = reduce(np.add, [np.abs(s) for s in away.slopes.values()], np.abs(away.value) + g.error)
+        error = np.maximum(f.error, np.where(np.isnan(spread), np.inf, spread))
+        return Number(self, f.value, error, f.slopes, self.lane(f, g))
+
+    def between(self, x: Number, low: Any, high: Any) -> Number:
+        """What is known to lie between two ends, where that says much more than its own bound; the value stays if it may."""
+        with np.errstate(invalid="ignore"):
+            inside = (low <= x.value) & (x.value <= high)
+            value = np.where(inside, x.value, 0.5 * (low + high))
+            error = np.maximum(high - value, value - low) + 2.0**-52 * np.abs(value)
+            wide = ~(x.deviation <= 2.0 * error)
+        slopes = {k: np.where(wide, 0.0, s) for k, s in x.slopes.items()}
+        return Number(self, np.where(wide, value, x.value), np.where(wide, error, x.error), slopes, x.lane)
+
+    def beyond(self, x: Number, least: float, up: Any) -> Number:
+        """What is decided to be >= `least` (`up`), or <= -`least`."""
+        above, below = (self.rising(f, x) for f in (lambda v: np.maximum(v, least), lambda v: np.minimum(v, -least)))
+        return self.where(up, above, below)
+
+    def constant(self, value: float, like: Any) -> Number:
+        """The same number for each row of `like`, in its lanes."""
+        like = self.of(like)
+        return Number(self, np.full(like.shape, value), np.zeros(like.shape), {}, like.lane)
+
+    def replaced(self, x: Any, where: Any, by: Any) -> Number:
+        """With other rows at some places."""
+        x, by = self.of(x), self.of(by)
+
+        def put(old: Any, new: Any) -> Any:
+            result = np.array(np.broadcast_to(old, x.shape))
+            result[where] = new
+            return result
+
+        slopes = {k: put(a, b) for k, a, b in self.pairs(x, by)}
+        return Number(self, put(x.value, by.value), put(x.error, by.error), slopes, x.lane)
+
+    def spread(self, x: Any, where: Any, count: int, nothing: float) -> Any:
+        """Rows at some of `count` places, `nothing` elsewhere; places are lanes. What is decided are arrays."""
+        if not isinstance(x, Number):
+            result = np.full(count, nothing, np.asarray(x).dtype)
+            result[where] = x
+            if result.dtype.kind in "ib":
+                return result
+        empty = Number(self, np.full(count, nothing), np.zeros(count), {}, np.arange(count))
+        return self.replaced(empty, where, x)

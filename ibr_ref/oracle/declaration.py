@@ -1,0 +1,163 @@
+"""What a port says of its device: a profile, single numbers, or both.
+
+    "vulkan"    "gl,subpixel_bits=4"    "subpixel_bits=4,filter_result=unorm8"    "device.json"
+
+A number replaces what the profile has: a device that rasterizes with 4 bits is `gl` with one number changed. Each number is
+one that an API can be asked for, or that its standard gives a range of.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ibr_ref.io.files import contents, naming
+from ibr_ref.oracle.device import PROFILES, Device
+from ibr_ref.scene import checks
+
+LARGEST_FILE = 2**16
+FILTER_BYTES = 1.0 / 255.0
+"""Of a filter that rounds to bytes: two lerps, one after the other, each to the nearest."""
+
+
+class Number(NamedTuple):
+    """Something that can be declared."""
+
+    allowed: range | tuple[str, ...]
+    meaning: str
+    """And whom to ask for it."""
+    change: Callable[[Device, Any], dict[str, Any]]
+    """The device's fields that it changes."""
+
+
+def _subpixels(device: Device, bits: int) -> dict[str, Any]:
+    """A splat's border moves by steps of the raster."""
+    return {"subpixel_bits": bits, "splat_border": device.splat_border * 2.0 ** (device.subpixel_bits - bits)}
+
+
+NUMBERS: dict[str, Number] = {
+    "subpixel_bits": Number(
+        range(4, 17),
+        "fractional bits of window positions: GL_SUBPIXEL_BITS, VkPhysicalDeviceLimits.subPixelPrecisionBits; "
+        "OpenGL ES 3.0 and WebGL 2: at least 4",
+        _subpixels,
+    ),
+    "texel_weight_bits": Number(
+        range(17),
+        "fractional bits of bilinear weights, 0: floats; VkPhysicalDeviceLimits.subTexelPrecisionBits",
+        lambda device, bits: {"weight_step": 2.0**-bits if bits else 0.0},
+    ),
+    "filter_result": Number(
+        ("float", "unorm8"),
+        "what a bilinear fetch from a texture of bytes gives: unorm8 where drivers filter bytes in bytes",
+        lambda device, result: {"filter_step": FILTER_BYTES if result == "unorm8" else 0.0},
+    ),
+    "varyings": Number(
+        ("snapped", "unsnapped"),
+        "the triangle that varyings are interpolated over: of the rasterized corners, or of those before snapping",
+        lambda device, over: {"unsnapped": over == "unsnapped"},
+    ),
+    "clip_z": Number(
+        ("zero_to_one", "minus_one_to_one"),
+        "range of z / w: glClipControl",
+        lambda device, over: {"minus_one": over == "minus_one_to_one"},
+    ),
+    "depth_format": Number(
+        ("float32", "unorm24", "unorm16"),
+        "the depth buffer's",
+        lambda device, name: {"depth_step": {"float32": 0.0, "unorm24": 2.0**-24, "unorm16": 2.0**-16}[name]},
+    ),
+    "unorm_rounding": Number(
+        ("nearest", "either"),
+        "of a colour that is stored as bytes: to the nearest, or to either neighbour",
+        lambda device, to: {"byte": 0.5 if to == "nearest" else 1.0},
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """A profile's name, or None where any may be it, and numbers by their names in `NUMBERS`.
+
+    Raises ValueError for others, and for values that are not allowed.
+    """
+
+    profile: str | None = None
+    numbers: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.profile is not None:
+            checks.choice("device", self.profile, list(PROFILES))
+        for name, value in self.numbers.items():
+            checks.choice("device", name, [*NUMBERS])
+            allowed = NUMBERS[name].allowed
+            whole = isinstance(value, int) and not isinstance(value, bool)
+            if value not in allowed or whole != isinstance(allowed, range):
+                span = f"{allowed[0]} to {allowed[-1]}" if isinstance(allowed, range) else " | ".join(allowed)
+                raise checks.reject(name, value, span)
+
+    def __bool__(self) -> bool:
+        return self.profile is not None or bool(self.numbers)
+
+    def device(self, profile: str) -> Device:
+        """A profile with the numbers."""
+        device = PROFILES[profile]
+        for name, value in self.numbers.items():
+            device = replace(device, **NUMBERS[name].change(device, value), numbers={**device.numbers, name: value})
+        return device
+
+
+ANY = Declaration()
+"""Nothing was said."""
+
+
+def declared(text: str) -> Declaration:
+    """Of an option: a profile's name, numbers k=v, both with commas between them, or the path of a .json file of them.
+
+    Raises OSError or ValueError, which say what is allowed.
+    """
+    if text.endswith(".json"):
+        return _of_file(Path(text))
+    names = [part.strip() for part in text.split(",")]
+    profiles = [name for name in names if "=" not in name]
+    if len(profiles) > 1:
+        raise checks.reject("device", text, f"one profile, {' | '.join(PROFILES)}, and numbers k=v")
+    pairs = [name.split("=", 1) for name in names if "=" in name]
+    twice = [key for key, _ in pairs if [k for k, _ in pairs].count(key) > 1]
+    if twice:
+        raise checks.reject("device", f"{twice[0]} twice", "each number once")
+    return Declaration(profiles[0] if profiles else None, {key: _value(key, value) for key, value in pairs})
+
+
+def device_of(text: str) -> Device:
+    """The device that a text with a profile in it declares."""
+    declaration = declared(text)
+    assert declaration.profile is not None
+    return declaration.device(declaration.profile)
+
+
+def _value(name: str, text: str) -> Any:
+    """A whole number where one is allowed, else the word."""
+    allowed = NUMBERS[name].allowed if name in NUMBERS else ()
+    return int(text) if isinstance(allowed, range) and text.isascii() and text.isdigit() else text
+
+
+def _of_file(path: Path) -> Declaration:
+    """{"profile": "gl", "subpixel_bits": 4}."""
+    data = contents(path)
+    with naming(path):
+        try:
+            fields = json.loads(data) if len(data) <= LARGEST_FILE else None
+        except (ValueError, RecursionError):
+            fields = None
+        if not isinstance(fields, dict):
+            raise ValueError('found no JSON object, allowed: {"profile": "gl", "subpixel_bits": 4}, say')
+        return of_fields(fields)
+
+
+def of_fields(fields: Mapping[str, Any]) -> Declaration:
+    """Of `port.json` or a device's file."""
+    return Declaration(fields.get("profile"), {key: value for key, value in fields.items() if key != "profile"})

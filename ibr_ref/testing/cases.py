@@ -1,0 +1,83 @@
+"""Small random cases that a right port passes: some ten pixels, texels and steps, so that each takes hundredths of a second.
+
+They are adversarial (grazing eyes, maps of one row, ties, slivers, planes that cut) but clear of what the APIs leave
+undefined, `oracle.undefined`. They shrink towards one pixel of one flat polygon, one point, or one plate over a floor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from hypothesis import assume
+from hypothesis import strategies as st
+from hypothesis.strategies import DrawFn, SearchStrategy
+
+from ibr_ref.oracle.cases import Case
+from ibr_ref.oracle.cases.splatting import case as splatting_case
+from ibr_ref.scene import Camera, Light, checks
+from ibr_ref.shadows import prepare
+from ibr_ref.testing import displacement, shadows, splatting
+
+PROFILE = "ieee32"
+ABOUT = "Drawn at random."
+
+PIXELS = st.tuples(st.integers(1, 16), st.integers(1, 16))
+"""Width and height of pictures."""
+TEXELS = st.tuples(st.integers(1, 7), st.integers(1, 7))
+"""Rows and columns of height maps."""
+
+NEAREST = 1e-4
+"""Share of the far plane's distance at which the near plane lies at least: nearer ones need a guard band."""
+
+
+def cases(method: str) -> SearchStrategy[Case]:
+    """Of a method. Raises ValueError for one that has none."""
+    checks.choice("method", method, tuple(_CASES))
+    return _CASES[method]()
+
+
+@st.composite
+def displacement_cases(draw: DrawFn) -> Case:
+    """Protruded displacement mapping, by all its parameters."""
+    found = draw(displacement.small(PIXELS, TEXELS))
+    _assume_room(found.scene.camera)
+    light = _with_a_power(found.scene.light)
+    return Case(
+        name="displacement-drawn",
+        about=ABOUT,
+        profile=PROFILE,
+        scene=replace(found.scene, light=light),
+        params=found.params,
+    )
+
+
+@st.composite
+def splatting_cases(draw: DrawFn) -> Case:
+    """Splatting of one to three depth images, by all its parameters."""
+    found = draw(splatting.drawn())
+    light = None if found.scene.light is None else _with_a_power(found.scene.light)
+    return splatting_case("drawn", "own", ABOUT, PROFILE, replace(found.scene, light=light), found.params)
+
+
+@st.composite
+def shadow_cases(draw: DrawFn) -> Case:
+    """Shadows by warped maps and by rendered ones."""
+    found = draw(shadows.drawn(PIXELS))
+    params = found.params
+    if params.method == "grid":
+        params = replace(params, method="warp")
+    _assume_room(found.scene.camera)
+    maps = {"maps": prepare(found.scene, params, controls=found.controls)} if params.method == "warp" else {}
+    return Case(name="shadows-drawn", about=ABOUT, profile=PROFILE, scene=found.scene, params=params, inputs=maps)
+
+
+def _assume_room(camera: Camera) -> None:
+    assume(camera.near > NEAREST * camera.far)
+
+
+def _with_a_power(light: Light) -> Light:
+    """A port's pow(0, 0) is undefined."""
+    return replace(light, exponent=max(1, light.exponent))
+
+
+_CASES = {"displacement": displacement_cases, "splatting": splatting_cases, "shadows": shadow_cases}

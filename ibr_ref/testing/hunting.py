@@ -1,0 +1,136 @@
+"""Random cases until the time is up; the first failure of each bug, as small as it gets."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis.database import DirectoryBasedExampleDatabase
+from hypothesis.errors import HypothesisException
+
+from ibr_ref.oracle.cases import Case
+from ibr_ref.testing.cases import cases
+from ibr_ref.testing.judging import Bug, Port, WrongError, bug_of
+
+ROUND = 200
+"""Examples that Hypothesis draws before it starts anew: it derives many of them from the ones before."""
+
+SHRINKING = 20.0
+"""Seconds for making one failure smaller, at the most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A bug, on the smallest case that shows it."""
+
+    bug: Bug
+    case: Case
+    """Named as the bug."""
+    after: int
+    """Cases that were tried before the first that showed it."""
+    seed: int
+    """Of the round that found it."""
+
+
+class _TimeIsUp(BaseException):
+    """Ends a round; no Exception, which Hypothesis would take for a failure."""
+
+
+@dataclass
+class Hunt:
+    """The bugs of one port. Run again with the same seed and the rounds before, it goes on where it stopped."""
+
+    port: Port
+    methods: tuple[str, ...]
+    device: str | None = None
+    """The profile that the port declares."""
+    seed: int = 0
+    database: Path | None = None
+    """Folder where Hypothesis keeps the examples that failed, to begin with next time."""
+    known: set[Bug] = field(default_factory=set)
+    rounds: int = 0
+    """That are over."""
+    tried: int = 0
+    """Cases."""
+    told: Callable[[Hunt], None] = lambda hunt: None
+    """Called after every case."""
+
+    def run(self, seconds: float) -> Iterable[Found]:
+        """Until the time is up, each bug when it has been made small, which may take `SHRINKING` longer."""
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            method = self.methods[self.rounds % len(self.methods)]
+            found = _Round(self, method, until).run()
+            self.rounds += 1
+            if found is not None:
+                self.known.add(found.bug)
+                yield found
+
+
+class _Round:
+    """One run of Hypothesis, which looks for one bug."""
+
+    def __init__(self, hunt: Hunt, method: str, until: float) -> None:
+        self.hunt, self.method, self.until = hunt, method, until
+        self.number = hunt.seed + hunt.rounds
+        self.before = hunt.tried
+        self.bug: Bug | None = None
+        self.smallest: Case | None = None
+
+    def run(self) -> Found | None:
+        """The bug that it found, if any."""
+        started = self.hunt.tried
+        with suppress(WrongError, _TimeIsUp, HypothesisException):  # one that does not come again is a failure too
+            self._test()()
+        if self.bug is None or self.smallest is None:
+            return None
+        return Found(self.bug, self.smallest, self.before - started, self.number)
+
+    def _test(self) -> Callable[[], None]:
+        database = self.hunt.database
+        chosen = settings(
+            max_examples=ROUND,
+            deadline=None,
+            database=None if database is None else DirectoryBasedExampleDatabase(database / self.method),
+            phases=[Phase.reuse, Phase.generate, Phase.shrink],
+            suppress_health_check=list(HealthCheck),
+            report_multiple_bugs=False,
+        )
+        return chosen(seed(self.number)(given(cases(self.method))(self._try)))  # seed alone would drop the database
+
+    def _try(self, case: Case) -> None:
+        if time.monotonic() > self.until and self.hunt.tried:  # the first case may have to wait for kernels
+            raise _TimeIsUp
+        bug = bug_of(case, self.hunt.port, self.hunt.device, self.hunt.known)
+        self.hunt.tried += 1
+        self.hunt.told(self.hunt)
+        if bug is None or bug != (self.bug or bug):
+            return
+        if self.bug is None:
+            self.bug, self.before = bug, self.hunt.tried
+            self.until = time.monotonic() + SHRINKING
+        if self.smallest is None or size_of(case) <= size_of(self.smallest):
+            self.smallest = case
+        raise WrongError(bug.name)
+
+
+def size_of(case: Case) -> tuple[int, int]:
+    """What is small: pixels, then numbers in the arrays of the scene and its parameters."""
+    camera = case.scene.camera
+    return camera.width * camera.height, _numbers((case.scene, case.params))
+
+
+def _numbers(part: object) -> int:
+    """Numbers in a description, and steps and samples as many as they say."""
+    if isinstance(part, np.ndarray):
+        return part.size
+    if isinstance(part, (tuple, list)):
+        return sum(map(_numbers, part))
+    if isinstance(part, int):
+        return abs(int(part))
+    return sum(map(_numbers, vars(part).values())) if hasattr(part, "__dataclass_fields__") else 1

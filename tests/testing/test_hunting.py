@@ -1,0 +1,133 @@
+"""Bugs are found, told apart, made small and not found again; a right port has none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ibr_ref import oracle
+from ibr_ref.oracle.cases import Case
+from ibr_ref.testing import Bug, Hunt, PortError, assert_port, bug_of, drawing, hunting
+from tests.oracle.tiny_cases import TINY, handed_of
+from tests.testing.test_cases import plain
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+
+BEFORE = ("vertex", "raster", "march")
+STEEP = Bug("displacement", "march", "march.steep")
+CLIP = Bug("displacement", "vertex", "vertex.clip")
+
+
+def reference(case: Case) -> dict[str, Any]:
+    """What a port may hand in that is the reference."""
+    return handed_of(case)
+
+
+def steep(case: Case) -> dict[str, Any]:
+    """Walls are flat, where the search has taken three steps; it has no stages after that."""
+    arrays = {name: array for name, array in reference(case).items() if name.partition(".")[0] in BEFORE}
+    arrays["march.steep"] ^= arrays["march.hit_index"] >= 3
+    return arrays
+
+
+def steep_and_clip(case: Case) -> dict[str, Any]:
+    """Another bug, in the stage before, on pictures of more than one column."""
+    arrays = steep(case)
+    if case.scene.camera.width > 1:
+        arrays["vertex.clip"] *= 1.01
+    return arrays
+
+
+def inverted(case: Case) -> dict[str, Any]:
+    """Walls are flat and roofs are steep, on any case."""
+    return {"march.steep": ~reference(case)["march.steep"]}
+
+
+class Clock:
+    """In place of time: a second passes with each look."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def monotonic(self) -> float:
+        self.now += 1.0
+        return self.now
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hunting, "time", Clock())
+    monkeypatch.setattr(hunting, "SHRINKING", 80.0)
+
+
+def hunt(draw: Callable[[Case], dict[str, Any]], **more: Any) -> Hunt:
+    return Hunt(port=drawing(draw), methods=("displacement",), **more)
+
+
+def test_a_bug_is_found_and_made_small() -> None:
+    chase = hunt(steep)
+    (found,) = chase.run(40)
+    assert found.bug == STEEP
+    assert chase.known == {STEEP}
+    camera = found.case.scene.camera
+    assert camera.width * camera.height <= 4
+    assert bug_of(found.case, drawing(steep), None) == STEEP
+    assert not [*hunt(steep, known={STEEP}).run(15)]
+
+
+def test_two_bugs_are_two(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hunting, "SHRINKING", 5.0)
+    found = [each.bug for each in hunt(steep_and_clip).run(60)]
+    assert sorted(found) == [STEEP, CLIP]
+
+
+def test_a_right_port_has_none_and_the_time_is_kept() -> None:
+    chase = hunt(reference)
+    assert not [*chase.run(20)]
+    assert 15 <= chase.tried <= 20
+
+
+def test_it_goes_on_with_what_failed_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The example that was being made smaller is the first that is tried next time."""
+    monkeypatch.setattr(hunting, "SHRINKING", 3.0)
+    (first,) = [*hunt(steep, database=tmp_path).run(30)][:1]
+    assert first.bug == STEEP
+    (again,) = [*hunt(steep, database=tmp_path, seed=99).run(30)][:1]
+    assert again.after == 1
+
+
+def test_a_port_that_does_not_draw_and_one_whose_files_are_unusable() -> None:
+    case = TINY["displacement-hill"]()
+
+    def ends(case: Case) -> Any:
+        raise PortError("exit code 3")
+
+    assert bug_of(case, ends, None) == Bug("displacement", "port", "exit code 3")
+    assert bug_of(case, drawing(lambda case: {"color": case.frame.color[1:]}), None) == Bug(
+        "displacement", "submission", "color"
+    )
+    assert Bug("displacement", "port", "exit code 3").name == "displacement-port-exit-code-3"
+    assert STEEP.name == "displacement-march.steep"
+
+
+def test_a_picture_alone_is_judged_too() -> None:
+    case = TINY["displacement-hill"]()
+    assert bug_of(case, drawing(lambda case: {"color": 0.5 * case.frame.color}), None) == Bug(
+        "displacement", "image", "color"
+    )
+
+
+def test_assert_port(tmp_path: Path) -> None:
+    assert_port(plain, method="splatting", device="ieee32", max_examples=5)
+    with pytest.raises(AssertionError, match=r"(?s)FAIL: displacement-march.steep, .*Case: ") as failure:
+        assert_port(inverted, method="displacement", max_examples=5, folder=tmp_path)
+    place = Path(str(failure.value).rpartition("Case: ")[2])
+    assert place == tmp_path / "displacement-march.steep"
+    case = oracle.load_case(place)
+    assert bug_of(case, drawing(inverted), None) == STEEP
+    assert case.frame.depth.shape == (1, 1)
+    with pytest.raises(ValueError, match="method: found 'rays'"):
+        assert_port(plain, method="rays")
