@@ -14,6 +14,8 @@ accepted set reaches over the border between two bytes. A coefficient that is to
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +33,21 @@ MOST_EXPLAINED = 0.5
 """Of a failed port's squared difference: a change that explains less than half is no explanation worth printing."""
 PRODUCT = 255.0 * UNIT
 """Rounding of 255 c in float32, the number that becomes a byte."""
+_MOST_KEPT = 2**26
+"""Bytes of a case's derivatives: those of a larger picture are made again for each submission."""
+
+
+class _Derivative(NamedTuple):
+    """A picture's, by one parameter."""
+
+    value: Floats
+    """(H, W, 3)."""
+    smooth: Bools
+    """(H, W) where it is one: where a decision turns, the picture jumps."""
+
+
+_KEPT: WeakKeyDictionary[Case, dict[str, _Derivative]] = WeakKeyDictionary()
+"""By parameter: they follow from the case alone, and are two pictures each. Cases do not change."""
 
 
 def biases(case: Case, handed: Handed, image: Judgement, device: Device, *, wrong: bool) -> tuple[Bias, ...]:
@@ -58,9 +75,9 @@ def _bias(
 ) -> Bias | None:
     """One parameter's regression; None where the picture does not depend on it."""
     middle = case.frame.color
-    derivative, smooth = _derivative(parameter, middle)
-    used = smooth & ~image.undecided
-    d = derivative[used]
+    derivative = _derivative(case, parameter)
+    used = derivative.smooth & ~image.undecided
+    d = derivative.value[used]
     power = float((d * d).sum())
     if power == 0.0:
         return None
@@ -86,8 +103,18 @@ def _excess(bias: Bias) -> float:
     return abs(bias.looks_like - bias.value) - bias.legal
 
 
-def _derivative(parameter: Parameter, middle: Floats) -> tuple[Floats, Bools]:
-    """The picture's derivative, and (H, W) where it is one: where a decision turns, the picture jumps.
+def _derivative(case: Case, parameter: Parameter) -> _Derivative:
+    known = _KEPT.setdefault(case, {})
+    if parameter.name in known:
+        return known[parameter.name]
+    found = _quotient(parameter, case.frame.color)
+    if sum(array.nbytes for one in (found, *known.values()) for array in one) <= _MOST_KEPT:
+        known[parameter.name] = found
+    return found
+
+
+def _quotient(parameter: Parameter, middle: Floats) -> _Derivative:
+    """The derivative as a difference quotient.
 
     At the end of a parameter's range the quotient is one-sided, and compared with that of half the step.
     """
@@ -99,11 +126,11 @@ def _derivative(parameter: Parameter, middle: Floats) -> tuple[Floats, Bools]:
         sign = -1.0 if up is None else 1.0
         whole, half = _moved(parameter, sign * parameter.step), _moved(parameter, sign * 0.5 * parameter.step)
         if whole is None or half is None:
-            return np.zeros_like(middle), np.zeros(middle.shape[:2], np.bool_)
+            return _Derivative(np.zeros_like(middle), np.zeros(middle.shape[:2], np.bool_))
         change, bend = whole - middle, whole + middle - 2.0 * half
         derivative = change / (sign * parameter.step)
     smooth = np.abs(bend) <= 0.1 * np.abs(change)  # a picture that jumps bends by as much as it changes
-    return derivative, np.asarray(smooth.all(axis=-1), np.bool_)
+    return _Derivative(derivative, np.asarray(smooth.all(axis=-1), np.bool_))
 
 
 def _moved(parameter: Parameter, step: float) -> Floats | None:

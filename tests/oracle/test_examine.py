@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ibr_ref.oracle import bias
+from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import LOOSEST, PROFILES
 from ibr_ref.oracle.examination import examine
 from ibr_ref.oracle.findings import Outcome
@@ -150,6 +152,25 @@ def test_a_wrong_parameter_is_estimated() -> None:
     assert verdict.biases[0].looks_like == pytest.approx(0.25, abs=1e-6)
     assert verdict.biases[0].explained > 0.99
     assert "light.ambient = 0.25 in place of 0.2" in verdict.words()
+
+
+def test_what_follows_from_the_case_alone_is_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its derivatives; of a picture too large to keep them, each time, and the verdict is the same."""
+    drawn: list[Case] = []
+    draw = Case.draw
+    monkeypatch.setattr(Case, "draw", lambda case, **how: drawn.append(case) or draw(case, **how))
+    case = box_case()
+    handed = {"color": np.floor(255 * case.frame.color + 0.5).astype(np.uint8)}
+    first = examine(case, handed).verdict
+    drawn.clear()
+    assert examine(case, handed).verdict == first
+    assert not drawn
+    monkeypatch.setattr(bias, "_MOST_KEPT", 0)
+    other = box_case()
+    assert [examine(other, handed).verdict for _ in range(2)] == [first, first]
+    others = [case for case in drawn if case is not other]
+    assert others
+    assert len(others) % 2 == 0
 
 
 def test_problems_and_nothing_are_inconclusive() -> None:

@@ -40,6 +40,37 @@ def test_a_grid_that_covers_nothing(array: str, change: str) -> None:
     assert outcome in (Outcome.FAIL, Outcome.INCONCLUSIVE)
 
 
+def test_an_index_beyond_the_search_has_no_endless_trace() -> None:
+    """A witness listed every sample up to the port's own index: 2^31 of them once."""
+    case = TINY["displacement-hill"]()
+    stages = {name: array for name, array in handed_of(case).items() if name not in ("color", "depth")}
+    stages["march.linear_index"] = np.full_like(stages["march.linear_index"], 1000)
+    verdict = oracle.check(case, oracle.submission_from_arrays(case, stages=stages), profile="ieee32").verdict
+    assert verdict.first_wrong_stage == "march"
+    assert all(0 < len(witness.trace) < 100 for witness in verdict.witnesses)
+
+
+@pytest.mark.parametrize("array", ["vertex.clip", "vertex.patch"])
+def test_no_face_at_all(array: str) -> None:
+    """A KeyError once, where the other of the two arrays was not handed in."""
+    case = TINY["displacement-tile"]()
+    handed = {array: handed_of(case)[array][:0]}
+    outcome, words = complaint(Input(0, "displacement-tile", {array: "no face"}, handed, "ieee32", True))
+    assert (outcome, words) == (Outcome.FAIL, None)
+
+
+@pytest.mark.parametrize("change", ["one NaN", "NaN", "some infinite", "1e30", "largest float32"])
+@pytest.mark.parametrize("name", ["displacement-tile", "displacement-cut"])
+def test_corners_that_are_no_numbers(name: str, change: str) -> None:
+    handed = handed_of(TINY[name]())
+    handed["vertex.clip"] = replacements("vertex.clip", handed["vertex.clip"])[change](
+        handed["vertex.clip"], np.random.default_rng(0)
+    )
+    outcome, words = complaint(Input(1, name, {"vertex.clip": change}, handed, "ieee32", True))
+    assert words is None
+    assert outcome in (Outcome.FAIL, Outcome.INCONCLUSIVE)
+
+
 def test_inputs_follow_from_their_numbers() -> None:
     for number in (3, 777, 10_003):
         one, again = made(number, 4), made(number, 4)

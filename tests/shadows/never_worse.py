@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -104,24 +105,42 @@ def _read(path: Path) -> dict[str, dict[str, Any]]:
 
 
 def table(done: dict[str, dict[str, Any]]) -> str:
-    """A row for each caster and range, of all lights and sizes; then what is behind."""
-    lines = [
-        "| caster | range | `best` | `fast` | `bounds` | `identity` | nearest of nine | behind |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    for caster, reach in itertools.product(CASTERS, RANGES):
-        of = [v for key, v in done.items() if key.split("/")[0] == caster and float(key.split("/")[2]) == reach]
-        if of:
-            cells = [
-                f"{np.mean([v[name][0] for v in of]):.3f} / {min(v[name][1] for v in of):.3f}"
-                for name in ("best", *RIVALS)
-            ]
-            lines.append(
-                f"| {caster} | {reach:g} | {' | '.join(cells)} | {sum(bool(behind(v)) for v in of)} of {len(of)} |"
-            )
-    lines.append("")
+    """A row for each caster and light, a column for each range and size: `best`, and how far it is ahead; what is behind."""
+    lines = [*_rows(done, _reached), "", *_rows(done, _ahead), ""]
     for key, figures in done.items():
         for name, what, by in behind(figures):
             k = 0 if what == "mean" else 1
             lines.append(f"- {key}: {what} {figures['best'][k]:.4f}, {name} {figures[name][k]:.4f} (by {by:.4f})")
+    lines.append(f"{len(done)} of {len(settings())} settings, behind in {sum(bool(behind(v)) for v in done.values())}")
     return "\n".join(lines)
+
+
+def _rows(done: dict[str, dict[str, Any]], cell: Callable[[dict[str, Any]], str]) -> list[str]:
+    columns = [*itertools.product(RANGES, SIZES)]
+    lines = [
+        "| caster, light | " + " | ".join(f"{reach:g}, {size}" for reach, size in columns) + " |",
+        "|---|" + "---|" * len(columns),
+    ]
+    by_setting = {tuple(key.split("/")[:4]): figures for key, figures in done.items()}
+    for caster, light in itertools.product(CASTERS, LIGHTS):
+        found = [by_setting.get((caster, light, str(reach), str(size))) for reach, size in columns]
+        if any(found):
+            cells = ["" if figures is None else cell(figures) for figures in found]
+            lines.append(f"| {caster}, {light} | {' | '.join(cells)} |")
+    return lines
+
+
+def _reached(figures: dict[str, Any]) -> str:
+    """Mean / worst of `best`."""
+    mean, worst = figures["best"]
+    return f"{_short(mean)} / {_short(worst)}"
+
+
+def _ahead(figures: dict[str, Any]) -> str:
+    """How far `best` is ahead of the best of the others, in the mean / at worst."""
+    by = [figures["best"][k] - max(figures[name][k] for name in RIVALS) for k in range(2)]
+    return " / ".join(_short(difference) for difference in by)
+
+
+def _short(number: float) -> str:
+    return f"{number:.3f}".replace("0.", ".")

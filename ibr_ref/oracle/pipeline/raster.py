@@ -77,6 +77,7 @@ def fragments_of(program: Any, triangles: list[tuple[int, list[Any]]], polygon: 
     found = coverage.fragments(x, y, width, height, owns_border=program.owns_border)
     at_x, at_y = coverage.snapped(x)[0], coverage.snapped(y)[0]
     area = (at_x[:, 1] - at_x[:, 0]) * (at_y[:, 2] - at_y[:, 0]) - (at_y[:, 1] - at_y[:, 0]) * (at_x[:, 2] - at_x[:, 0])
+    # Corners that are no numbers cover nothing, whichever way round.
     drawn = np.array([bool(program.draws_orientation(int(np.nan_to_num(np.sign(a))))) for a in area], np.bool_)
     shift = program.varying_centre() - program.centre()
     value, rounding, gradient = _weights(found, at_x, at_y, area, device, shift)

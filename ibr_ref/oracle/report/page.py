@@ -5,12 +5,13 @@ from __future__ import annotations
 import base64
 import json
 import zlib
+from functools import cache
 from importlib.resources import files
 from os import PathLike
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, StrictUndefined
+from jinja2 import Environment, StrictUndefined, Template
 from numpy.typing import NDArray
 
 from ibr_ref.io.outputs import atomic
@@ -33,10 +34,9 @@ def page(examination: Examination) -> str:
     """The page as text."""
     verdict = examination.verdict
     first = examination.first_wrong
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     pictures = layers(examination)
     height, width = examination.case.frame.color.shape[:2]
-    return environment.from_string(_asset("page.html")).render(
+    return _template().render(
         verdict=verdict,
         words=words(verdict, trace=False),  # which have tables of their own
         most_lines=MOST_LINES,
@@ -51,6 +51,13 @@ def page(examination: Examination) -> str:
         script=_asset("page.js"),
         data=_script_safe(_inspector(examination)),
     )
+
+
+@cache
+def _template() -> Template:
+    """Compiled once: it takes longer than all else that is done for a small page."""
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    return environment.from_string(_asset("page.html"))
 
 
 def _asset(name: str) -> str:

@@ -86,12 +86,13 @@ def _recognized(port: Port) -> list[Face]:
     names = [name, *port.names("vertex")]
     quads = {n: np.asarray(port.handed[n], np.float64).reshape(-1, 4, port.handed[n].shape[1]) for n in names if n}
     count = len(quads[str(name)])
-    if len(quads.get("vertex.clip", ())) == count:
+    if "vertex.clip" in quads and len(quads["vertex.clip"]) == count:
         found = [_in_clip_space(port, quad) for quad in quads["vertex.clip"]]
         if any(number >= 0 for _, number in found):
             return found
-    patches = quads["vertex.patch"] if len(quads.get("vertex.patch", ())) == count else np.empty((count, 4, 0))
-    return [_in_patch_space(port, quad) for quad in patches]
+    if "vertex.patch" in quads and len(quads["vertex.patch"]) == count:
+        return [_in_patch_space(port, quad) for quad in quads["vertex.patch"]]
+    return [(-1, -1)] * count
 
 
 def _in_clip_space(port: Port, quad: NDArray[np.float64]) -> Face:

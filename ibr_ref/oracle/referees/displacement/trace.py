@@ -180,6 +180,8 @@ def _march(port: Port, pixel: int, point: Points) -> Iterator[TraceRow]:
     yield _row("ray at t = 0", start, None)
     yield _row("ray at t = 1", [a.plus(b) for a, b in zip(start, way, strict=True)], None)
     linear = int(port.ints("march.linear_index")[pixel]) if port.has("march.linear_index") else None
+    if linear is not None and linear > params.linear_steps:  # no sample of the search: which way it took is not known
+        linear = None
     hit = int(port.ints("march.hit_index")[pixel]) if port.has("march.hit_index") else None
     stop = search.stop()
     last = params.linear_steps if stop is None or (linear is not None and linear < 0) else max(stop, linear or 0)
