@@ -14,16 +14,16 @@ from importlib.util import find_spec
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bytes
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.self_test import plain_port, tried
 
-Image = NDArray[np.uint8]
-Comparator = Callable[[Image, Image], bool]
+Comparator = Callable[[Bytes, Bytes], bool]
 KINDS = ("easy", "typical", "adversarial")
 
 
-def _rmse(a: Image, b: Image) -> float:
+def _rmse(a: Bytes, b: Bytes) -> float:
     return float(np.sqrt(np.mean((a / 255.0 - b / 255.0) ** 2)))
 
 
@@ -31,18 +31,18 @@ def _within(steps: int, share: float) -> Comparator:
     return lambda a, b: float((abs(a.astype(int) - b.astype(int)).max(axis=-1) > steps).mean()) <= share
 
 
-def _psnr(a: Image, b: Image) -> float:
+def _psnr(a: Bytes, b: Bytes) -> float:
     rmse = _rmse(a, b)
     return -20.0 * np.log10(rmse) if rmse else np.inf
 
 
-def _ssim(a: Image, b: Image) -> float:
+def _ssim(a: Bytes, b: Bytes) -> float:
     from skimage.metrics import structural_similarity
 
     return float(structural_similarity(a, b, channel_axis=-1))
 
 
-def _flip(a: Image, b: Image) -> float:
+def _flip(a: Bytes, b: Bytes) -> float:
     import flip_evaluator
 
     images = (image.astype(np.float32) / 255.0 for image in (a, b))
@@ -65,11 +65,11 @@ def comparators() -> dict[str, Comparator]:
     return found
 
 
-def _bytes(color: NDArray[np.float64]) -> Image:
+def _bytes(color: NDArray[np.float64]) -> Bytes:
     return np.floor(255.0 * np.clip(np.nan_to_num(color), 0.0, 1.0) + 0.5).astype(np.uint8)
 
 
-def _differences(cases: list[Case], port: type, policy: Policy) -> Iterator[tuple[Image, Image]]:
+def _differences(cases: list[Case], port: type, policy: Policy) -> Iterator[tuple[Bytes, Bytes]]:
     for case in cases:
         drawn = port(case.scene, case.params, policy, case.inputs).render()["color"]
         yield _bytes(case.frame.color), _bytes(drawn)

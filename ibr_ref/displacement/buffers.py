@@ -11,12 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats, Indices
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.waves import load
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Bools = NDArray[np.bool_]
 
 
 class Uniforms(NamedTuple):
@@ -79,7 +76,7 @@ class Fragments(NamedTuple):
 
     pixel: NDArray[np.int64]
     """row * width + column."""
-    face: Ints
+    face: Indices
     patch: Floats
     """(3, F): C, the fragment's point in patch space, u, v and h in rows."""
     depth: Floats
@@ -100,9 +97,9 @@ class Rays(NamedTuple):
 class Hits(NamedTuple):
     """Stage march."""
 
-    linear_index: Ints
+    linear_index: Indices
     """Step at which the linear search stopped; -1 none."""
-    hit_index: Ints
+    hit_index: Indices
     """Lattice index of the hit; -1 discarded."""
     u: Floats
     """NaN: discarded."""

@@ -11,10 +11,11 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from ibr_ref.array_types import Floats
 from ibr_ref.displacement.buffers import Hits, Uniforms
 from ibr_ref.displacement.inputs import Params
 from ibr_ref.displacement.raster import base_points
-from ibr_ref.displacement.sought import Floats, Found, Sought
+from ibr_ref.displacement.sought import Found, Sought
 from ibr_ref.displacement.textures import Map
 from ibr_ref.methods import Room
 from ibr_ref.scene import BasePolygon

@@ -10,14 +10,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.displacement.below import border, distance_to_eye, in_domain, keep, view_ray
 from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch, lerp
-
-Floats = NDArray[np.float64]
 
 
 class Level(NamedTuple):

@@ -9,28 +9,29 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats
 from ibr_ref.displacement.buffers import Uniforms
 from ibr_ref.scene import BasePolygon, Camera, Light
-from ibr_ref.scene.vectors import Array, cross, dot, length
+from ibr_ref.scene.vectors import cross, dot, length
 
 
-def to_patch(rows: Array, corner: Array, homogeneous: Array) -> Array:
+def to_patch(rows: Floats, corner: Floats, homogeneous: Floats) -> Floats:
     """A homogeneous world point or direction in patch space."""
     offset = homogeneous[:3] - corner if homogeneous[3] == 1.0 else homogeneous[:3]
     return np.array([*(dot(row, offset) for row in rows), homogeneous[3]])
 
 
-def _normal(polygon: BasePolygon) -> Array:
+def _normal(polygon: BasePolygon) -> Floats:
     normal = cross(*polygon.arrays[1:])
     return normal / length(normal)
 
 
-def edge_h(polygon: BasePolygon) -> Array:
+def edge_h(polygon: BasePolygon) -> Floats:
     """(3,) N3, the edge of the volume that stands on the polygon."""
     return polygon.height_scale * _normal(polygon)
 
 
-def rows_of(polygon: BasePolygon) -> Array:
+def rows_of(polygon: BasePolygon) -> Floats:
     """(3, 3) the reciprocal basis: u, v and h of a world point are its rows times the vector from the corner."""
     _, edge_u, edge_v = polygon.arrays
     upwards = edge_h(polygon)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats, Indices
 from ibr_ref.contract import IMAGE, StageArray
 from ibr_ref.displacement.contract import FRAGMENT_FIELDS, STAGES
 from ibr_ref.jit import LANES, device, kernel, prange
@@ -14,21 +14,17 @@ from ibr_ref.pipeline.memory import Layout, arrays
 from ibr_ref.pipeline.merge import passes
 from ibr_ref.pipeline.waves import lanes, load, load_indices, store, store_indices
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
-Bools = NDArray[np.bool_]
-
 
 class Target(NamedTuple):
     """The frame's arrays, one row a pixel: (P,) or (P, 3). Without stages all but the first two are empty."""
 
     color: Floats
     depth: Floats
-    face: Ints
-    patch_id: Ints
+    face: Indices
+    patch_id: Indices
     patch: Floats
-    linear_index: Ints
-    hit_index: Ints
+    linear_index: Indices
+    hit_index: Indices
     hit: Floats
     height_before: Floats
     steep: Bools

@@ -8,10 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.displacement.buffers import Hits, Uniforms
 from ibr_ref.displacement.textures import Map
-
-Floats = NDArray[np.float64]
 
 
 class Found(NamedTuple):

@@ -7,10 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.displacement.buffers import Uniforms
 from ibr_ref.jit import routine
-
-Array = NDArray[np.float64]
 
 BASE, U0, U1, V0, V1, TOP = range(6)
 
@@ -31,8 +30,8 @@ class Faces(NamedTuple):
     """Drawn quads in submission order: numbers (F,), corners in patch space (4 F, 3) and clip space (4 F, 4)."""
 
     numbers: NDArray[np.int32]
-    patch: Array
-    clip: Array
+    patch: Floats
+    clip: Floats
 
     @property
     def triangles(self) -> NDArray[np.int32]:
@@ -41,7 +40,7 @@ class Faces(NamedTuple):
         return (quads + np.array([[0, 1, 2], [0, 2, 3]], np.int32)).reshape(-1, 3)
 
 
-def away_faces(eye: Array, interval: str) -> list[int]:
+def away_faces(eye: Floats, interval: str) -> list[int]:
     """Numbers of the faces of the unit cube that are turned away from the eye (4,) in patch space.
 
     A view ray that goes down through the volume leaves it through one of them. The top only counts with
@@ -54,7 +53,7 @@ def away_faces(eye: Array, interval: str) -> list[int]:
     return [number for number, away in turned if away]
 
 
-def extended_base(eye: Array) -> Array:
+def extended_base(eye: Floats) -> Floats:
     """The base enlarged as in section 3.2.1: (4, 3) corners of the rectangle that covers all the volume's projections.
 
     The eye must be above the top of the volume: its projection onto the base is infinite otherwise.

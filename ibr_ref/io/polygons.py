@@ -7,10 +7,8 @@ from bisect import bisect
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Ints
 from ibr_ref.scene import checks
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 _FLAT = 1e-12
 """Distance from a line, in extents of a polygon, that is rounding."""
@@ -24,7 +22,7 @@ _MOST_TO_CUT = 2**16
 """Corners of a polygon that is no fan: cutting takes up to the square of their number."""
 
 
-def triangulated(vertices: Floats, corners: Integers, counts: Integers) -> Integers:
+def triangulated(vertices: Floats, corners: Ints, counts: Ints) -> Ints:
     """Triangles (T, 3) of polygons: vertices (V, 3), all corners one after the other, and how many each polygon has, >= 3.
 
     A polygon is cut into a fan from its first corner where that covers it once, as with all convex ones, and by ear
@@ -53,24 +51,24 @@ def triangulated(vertices: Floats, corners: Integers, counts: Integers) -> Integ
     return triangles
 
 
-def check_corners(corners: Integers, count: int) -> None:
+def check_corners(corners: Ints, count: int) -> None:
     """Raise ValueError for corners that are none of `count` vertices."""
     bad = corners[(corners < 0) | (corners >= count)]
     if len(bad):
         raise checks.reject("triangles", int(bad[0]), f"indices from 0 to {count - 1}")
 
 
-def strip(corners: Integers) -> Integers:
+def strip(corners: Ints) -> Ints:
     """Triangles (n - 2, 3) of a strip of n corners, all wound as the first."""
     i = np.arange(max(len(corners) - 2, 0))
-    triangles: Integers = corners[np.stack([i, i + 1 + i % 2, i + 2 - i % 2], axis=1)]
+    triangles: Ints = corners[np.stack([i, i + 1 + i % 2, i + 2 - i % 2], axis=1)]
     return triangles
 
 
-def fan(corners: Integers) -> Integers:
+def fan(corners: Ints) -> Ints:
     """Triangles (n - 2, 3) of a fan of n corners around the first, in glTF's order."""
     i = np.arange(max(len(corners) - 2, 0))
-    triangles: Integers = corners[np.stack([i + 1, i + 2, 0 * i], axis=1)]
+    triangles: Ints = corners[np.stack([i + 1, i + 2, 0 * i], axis=1)]
     return triangles
 
 
@@ -109,7 +107,7 @@ def _is_fan(flat: Floats) -> NDArray[np.bool_]:
     return result
 
 
-def _cut(flat: Floats, name: str) -> Integers:
+def _cut(flat: Floats, name: str) -> Ints:
     """(n - 2, 3) corners of the triangles of a simple polygon (n, 2).
 
     Triangles that are all wound as the polygon, with its area in all, cover each point as often as it goes around it.
@@ -132,7 +130,7 @@ def _cut(flat: Floats, name: str) -> Integers:
     raise ValueError(f"found {name}, of {count} corners, which crosses itself, allowed: polygons that do not")
 
 
-def _edges(flat: Floats, triangles: Integers) -> tuple[Floats, Floats]:
+def _edges(flat: Floats, triangles: Ints) -> tuple[Floats, Floats]:
     """(t, 2) twice: the edges of triangles (t, 3) of points (n, 2) from their first corners."""
     a, b, c = np.moveaxis(flat[triangles], 1, 0)
     return b - a, c - a
@@ -151,7 +149,7 @@ def _heights(first: Floats, second: Floats) -> Floats:
     return heights
 
 
-def _with_all_corners(flat: Floats, cut: Integers) -> Integers:
+def _with_all_corners(flat: Floats, cut: Ints) -> Ints:
     """The same with the corners that ear clipping leaves out: in the plane they bend nothing, or end a spike.
 
     In space they may, and neighbours have edges there. Each splits the triangle on whose edge it lies, or makes one of its

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ibr_ref.models.loft import capped, joined, turn
 from ibr_ref.models.sweep import spline, straight, tube
 from ibr_ref.scene import Mesh
 
-Array = NDArray[np.float64]
 Point = tuple[float, float, float]
 
 _WOOD, _DARK, _SEAT = (0.60, 0.36, 0.17), (0.36, 0.19, 0.08), (0.70, 0.46, 0.24)

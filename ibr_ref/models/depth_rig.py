@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.pipeline.clip import clip_triangles
 from ibr_ref.pipeline.transform import transformed
 from ibr_ref.pipeline.triangles import set_up
 from ibr_ref.pipeline.visibility import interpolate, visible
 from ibr_ref.scene import Camera, DepthImage, Mesh, checks
 from ibr_ref.scene.trigonometry import sine_cosine
-
-Array = NDArray[np.float64]
 
 COUNTS = (4, 9, 16, 32)
 MOST_PIXELS = 4096
@@ -53,7 +51,7 @@ def depth_rig(mesh: Mesh, count: int = 9, *, size: int = 192) -> list[DepthImage
     return [depth_image(mesh, _camera(center, radius, direction, size)) for direction in directions(count)]
 
 
-def directions(count: int) -> Array:
+def directions(count: int) -> Floats:
     """(count, 3) unit vectors of the Fibonacci lattice: z = 1 - (2 k + 1)/count, turned by the golden angle each time.
 
     Evenly spread, from near +z to near -z, none of them vertical.
@@ -86,7 +84,7 @@ def depth_image(mesh: Mesh, camera: Camera) -> DepthImage:
     return DepthImage(color=color, depth=pixels[:, :, 0], camera=camera, mask=mask)
 
 
-def _sphere_around(mesh: Mesh) -> tuple[Array, float]:
+def _sphere_around(mesh: Mesh) -> tuple[Floats, float]:
     """The middle of the bounding box, and the distance from there to the farthest vertex."""
     used, (low, high) = mesh.corners, mesh.bounds
     if not np.abs(used).max() <= _FARTHEST:
@@ -102,7 +100,7 @@ def _sphere_around(mesh: Mesh) -> tuple[Array, float]:
     return center, radius
 
 
-def _camera(center: Array, radius: float, direction: Array, size: int) -> Camera:
+def _camera(center: Floats, radius: float, direction: Floats, size: int) -> Camera:
     return Camera.look_at(
         eye=center + DISTANCE * radius * direction,
         target=center,

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ibr_ref.array_types import Floats
 from ibr_ref.models.loft import capped, joined
 from ibr_ref.models.sweep import ellipses, spline
 from ibr_ref.scene import Mesh
 
-Array = NDArray[np.float64]
 Section = tuple[float, float, float, float, float]
 """A cut across a limb, an ellipse: x and z of the end of its axis that is on the left as the limb goes, as one sees it from
 -y with +x to the right, then of the other end; and half its width."""
@@ -89,7 +89,7 @@ def _leg(knots: list[Section], y: float, stride: float) -> Mesh:
     return _lofted(sections, 14, stockings, y)
 
 
-def _lofted(sections: Array, sides: int, color: ArrayLike, y: float) -> Mesh:
+def _lofted(sections: Floats, sides: int, color: ArrayLike, y: float) -> Mesh:
     left_x, left_z, right_x, right_z, half_width = sections.T
     zero = np.zeros(len(sections))
     left = np.stack([left_x, y + zero, left_z], axis=1)

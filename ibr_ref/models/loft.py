@@ -11,17 +11,15 @@ from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ibr_ref.array_types import Floats, Ints
 from ibr_ref.scene import Mesh
 from ibr_ref.scene.trigonometry import sine_cosine
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-
 
 @cache
-def turn(count: int) -> Array:
+def turn(count: int) -> Floats:
     """(count, 2) cosine and sine of a full turn in equal steps, from angle 0."""
     pairs = [sine_cosine(2.0 * math.pi * k / count) for k in range(count)]
     result = np.array([(cosine, sine) for sine, cosine in pairs])
@@ -29,7 +27,7 @@ def turn(count: int) -> Array:
     return result
 
 
-def capped(rings: Array, first_pole: ArrayLike, last_pole: ArrayLike, color: ArrayLike) -> Mesh:
+def capped(rings: Floats, first_pole: ArrayLike, last_pole: ArrayLike, color: ArrayLike) -> Mesh:
     """The closed surface through S rings of M points, (S, M, 3), and a pole at either end: 2 S M triangles.
 
     color: (3,), or (S, 3), one a ring (a pole has its neighbour's). Vertices: pole, rings one after the other, pole.
@@ -47,7 +45,7 @@ def capped(rings: Array, first_pole: ArrayLike, last_pole: ArrayLike, color: Arr
     )
 
 
-def looped(rings: Array, color: ArrayLike) -> Mesh:
+def looped(rings: Floats, color: ArrayLike) -> Mesh:
     """The closed surface through S rings of M points, (S, M, 3), the last joined to the first: 2 S M triangles.
 
     color: (3,), or (S, 3), one a ring.
@@ -72,20 +70,20 @@ def joined(parts: Sequence[Mesh]) -> Mesh:
     )
 
 
-def _around(size: int) -> tuple[Indices, Indices]:
+def _around(size: int) -> tuple[Ints, Ints]:
     """Each point of a ring, and the next."""
     here = np.arange(size)
     return here, (here + 1) % size
 
 
-def _strip(lower: int, upper: int, size: int) -> Indices:
+def _strip(lower: int, upper: int, size: int) -> Ints:
     """(2 size, 3) the quads between two rings that start at the vertices `lower` and `upper`."""
     here, then = _around(size)
     quads = [lower + here, lower + then, upper + then], [lower + here, upper + then, upper + here]
     return np.stack([np.stack(triangle, axis=1) for triangle in quads], axis=1).reshape(-1, 3)
 
 
-def _ring_colors(color: ArrayLike, count: int, size: int, poles: bool) -> Array:
+def _ring_colors(color: ArrayLike, count: int, size: int, poles: bool) -> Floats:
     """(V, 3) from one colour, or one a ring."""
     rings = np.broadcast_to(np.asarray(color, np.float64), (count, 3))
     repeats = np.full(count, size)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ibr_ref.array_types import Floats
 from ibr_ref.scene import Camera
-
-Floats = NDArray[np.float64]
 
 
 def ball_depths(camera: Camera, radius: float = 1.0, middle: ArrayLike = (0, 0, 0)) -> Floats:

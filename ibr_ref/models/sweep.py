@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ibr_ref.array_types import Floats
 from ibr_ref.models.loft import turn
 
-Array = NDArray[np.float64]
 
-
-def spline(knots: ArrayLike, count: int) -> Array:
+def spline(knots: ArrayLike, count: int) -> Floats:
     """(count, K) points of the Catmull-Rom curve through the knots (P, K), from the first to the last.
 
     The points are even in the parameter, of which every span between two knots has as much.
@@ -24,19 +23,19 @@ def spline(knots: ArrayLike, count: int) -> Array:
     slope_here, slope_then = (then - before) / 2.0, (after - here) / 2.0
     rise = then - here
     square, cube = f * f, f * f * f
-    curve: Array = here + slope_here * (f - 2.0 * square + cube)
+    curve: Floats = here + slope_here * (f - 2.0 * square + cube)
     curve += rise * (3.0 * square - 2.0 * cube) + slope_then * (cube - square)
     return curve
 
 
-def ellipses(centers: Array, first: Array, second: Array, sides: int) -> Array:
+def ellipses(centers: Floats, first: Floats, second: Floats, sides: int) -> Floats:
     """(S, sides, 3) rings centers + cos first + sin second, each (S, 3); first x second points to where the rings go."""
     cosine, sine = turn(sides).T[:, None, :, None]
-    rings: Array = centers[:, None, :] + cosine * first[:, None, :] + sine * second[:, None, :]
+    rings: Floats = centers[:, None, :] + cosine * first[:, None, :] + sine * second[:, None, :]
     return rings
 
 
-def tube(path: Array, radii: ArrayLike, across: ArrayLike, sides: int) -> Array:
+def tube(path: Floats, radii: ArrayLike, across: ArrayLike, sides: int) -> Floats:
     """(S, sides, 3) rings about a path (S, 3), square to it.
 
     radii: (S,), or (S, 2): along `across` x path, and along what is square to both. across: a direction that the path
@@ -51,20 +50,20 @@ def tube(path: Array, radii: ArrayLike, across: ArrayLike, sides: int) -> Array:
     return ellipses(path, wide * first, high * second, sides)
 
 
-def straight(start: ArrayLike, end: ArrayLike, shares: ArrayLike) -> Array:
+def straight(start: ArrayLike, end: ArrayLike, shares: ArrayLike) -> Floats:
     """(S, 3) points from start (share 0) to end (share 1)."""
     share = np.asarray(shares, np.float64)[:, None]
     return np.asarray(start) * (1.0 - share) + np.asarray(end) * share
 
 
-def cross(a: Array, b: Array) -> Array:
+def cross(a: Floats, b: Floats) -> Floats:
     """The cross products of the rows of two arrays (S, 3)."""
     (ax, ay, az), (bx, by, bz) = a.T, b.T
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
 
 
-def unit(a: Array) -> Array:
+def unit(a: Floats) -> Floats:
     """The rows (S, 3), none of them zero, divided by their lengths."""
     x, y, z = a.T
-    length: Array = np.sqrt(x * x + y * y + z * z)
+    length: Floats = np.sqrt(x * x + y * y + z * z)
     return a / length[:, None]

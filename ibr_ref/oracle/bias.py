@@ -20,14 +20,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.findings import Bias
 from ibr_ref.oracle.judgement import Handed, Judgement, Parameter
 from ibr_ref.oracle.referees import referee
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 MOST_EXPLAINED = 0.5
 """Of a failed port's squared difference: a change that explains less than half is no explanation worth printing."""

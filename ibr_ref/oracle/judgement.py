@@ -9,11 +9,11 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.findings import Cause
 
-Bools = NDArray[np.bool_]
 Handed = Mapping[str, Any]
 """A port's arrays by their names in the contract, checked for shape and dtype: "color" (H, W, 3) uint8 or floats, "depth",
 and any of the stages; an atlas as a tuple of pages."""

@@ -10,11 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import routine
 from ibr_ref.pipeline.clip import GUARD, clip_triangles
 from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, set_up
-
-Array = NDArray[np.float64]
 
 NEAR, FAR, OUTSIDE, SMALL, DRAWN = range(5)
 """Fates: wholly before the near plane, wholly beyond the far one, beside the picture, between the pixels' centres, or
@@ -60,7 +59,7 @@ def culled(what: str, fates: NDArray[np.integer], away: int = 0) -> Culled:
     return Culled(what, len(fates) + away, away, *counts)
 
 
-def fates_of_triangles(clip: Array, indices: NDArray[np.int32], width: int, height: int) -> NDArray[np.int64]:
+def fates_of_triangles(clip: Floats, indices: NDArray[np.int32], width: int, height: int) -> NDArray[np.int64]:
     """(T,) fates of triangles with corners in clip space, in a picture of `width` x `height`."""
     z, w = clip[:, 2][indices], clip[:, 3][indices]
     fates = np.full(len(indices), OUTSIDE)
@@ -85,7 +84,7 @@ def _mark_covering(triangles, width, drawn):
                 break
 
 
-def cut_triangles(clip: Array, indices: NDArray[np.int32]) -> tuple[int, int, int, int]:
+def cut_triangles(clip: Floats, indices: NDArray[np.int32]) -> tuple[int, int, int, int]:
     """How many triangles the frustum does not hold wholly; and how many leave it by the near plane, the far one, a side."""
     x, y, z, w = clip.T
     near, far, beside = z < 0.0, z > w, (np.abs(x) > w) | (np.abs(y) > w)

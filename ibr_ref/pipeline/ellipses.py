@@ -15,13 +15,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.memory import arrays
 from ibr_ref.pipeline.merge import passes
 from ibr_ref.pipeline.points import BAND_ROWS, Shares, share_out, snapped
-
-Floats = NDArray[np.float64]
 
 MOST_CUTOFF = 8.0
 """Standard deviations: `gaussian` is exact to a few units in the last place up to there."""

@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.scene import checks
 from ibr_ref.scene.projection import depth_row
 from ibr_ref.scene.trigonometry import sine_cosine
-from ibr_ref.scene.vectors import Array, dot, unit
+from ibr_ref.scene.vectors import dot, unit
 
 
 class AxisAngle(NamedTuple):
@@ -55,7 +56,7 @@ def clip_from_view(fields: AxisAngle, near: float, far: float, *, perspective: b
     return clip
 
 
-def _rotation(orientation: Array) -> Array:
+def _rotation(orientation: Floats) -> Floats:
     """(3, 3) by Rodrigues' formula, from (x, y, z, angle)."""
     longest = float(np.abs(orientation[:3]).max())
     if longest == 0.0 or not abs(orientation[3]) <= 1e6:

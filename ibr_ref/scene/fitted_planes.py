@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ibr_ref.array_types import Floats
 from ibr_ref.pipeline.transform import transformed
 from ibr_ref.scene import checks
-
-Array = NDArray[np.float64]
 
 _LEAST = 1e-6
 """Of the far plane's distance: where the nearest near plane lies, for an eye among the points."""
@@ -18,7 +17,7 @@ _BESIDE = 0.5
 """Share of the nearest depth that can be in the picture: splats whose centres are beside it may reach in."""
 
 
-def checked_points(points: ArrayLike) -> Array:
+def checked_points(points: ArrayLike) -> Floats:
     """(N, 3) finite points, at least one."""
     found = checks.numbers("points", points, "points (N, 3), N >= 1")
     if found.ndim != 2 or found.shape[1] != 3 or not len(found):
@@ -29,7 +28,7 @@ def checked_points(points: ArrayLike) -> Array:
 
 
 def fitted_planes(
-    points: Array, view_from_world: Array, widest: float | None, near: float | None, far: float | None
+    points: Floats, view_from_world: Floats, widest: float | None, near: float | None, far: float | None
 ) -> tuple[float, float]:
     """Distances of planes that hold the convex hull of points (N, 3) in world space, or what of it is before the eye.
 
@@ -56,7 +55,7 @@ def _parallel(nearest: float, farthest: float) -> tuple[float, float]:
     return nearest - room, farthest + room
 
 
-def _before_the_eye(local: Array, nearest: float, farthest: float, widest: float) -> tuple[float, float]:
+def _before_the_eye(local: Floats, nearest: float, farthest: float, widest: float) -> tuple[float, float]:
     """For points in view space. What is in the picture lies no nearer than the box around them times a cosine."""
     low, high = local.min(axis=0), local.max(axis=0)
     if farthest <= 0.0:  # all behind the eye: planes about as far away, which hold nothing

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.scene import checks
-from ibr_ref.scene.vectors import Array, cross, dot, length
+from ibr_ref.scene.vectors import cross, dot, length
 
 _FARTHEST = 1e50
 
@@ -29,7 +30,7 @@ def view_from_world(eye: ArrayLike, target: ArrayLike, up: ArrayLike) -> NDArray
     return view
 
 
-def _moderate(field: str, value: ArrayLike) -> Array:
+def _moderate(field: str, value: ArrayLike) -> Floats:
     """A vector whose products of four components do not overflow."""
     result = checks.vector(field, value)
     if not abs(result).max() <= _FARTHEST:

@@ -7,8 +7,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ibr_ref.array_types import Floats
 from ibr_ref.scene import checks
-from ibr_ref.scene.vectors import Array, cross, dot
+from ibr_ref.scene.vectors import cross, dot
 
 Quaternion = tuple[float, float, float, float]
 """x, y, z, w: the scalar last."""
@@ -17,7 +18,7 @@ MOST_DEFECT = 1e-3
 """Of a measured rotation, the Frobenius norm of R^T R - I."""
 
 
-def rotation_matrix(field: str, value: ArrayLike) -> Array:
+def rotation_matrix(field: str, value: ArrayLike) -> Floats:
     """(3, 3), checked: a rotation to MOST_DEFECT, and no mirroring."""
     r = checks.matrix(field, value, 3, 3)
     defect = float(np.linalg.norm(r.T @ r - np.eye(3)))
@@ -27,12 +28,12 @@ def rotation_matrix(field: str, value: ArrayLike) -> Array:
     return r
 
 
-def cofactors(m: Array) -> Array:
+def cofactors(m: Floats) -> Floats:
     """(3, 3) of a (3, 3): the transposed adjugate."""
     return np.stack([cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])])
 
 
-def nearest_rotation(r: Array) -> Array:
+def nearest_rotation(r: Floats) -> Floats:
     """The true rotation Q nearest to a measured one (3, 3), in the Frobenius norm: R's polar factor.
 
     Newton's iteration R <- (R + R^-T)/2 (Higham 1986) takes a singular value 1 + e to about 1 + e^2/2, so that three
@@ -45,7 +46,7 @@ def nearest_rotation(r: Array) -> Array:
     return r
 
 
-def quaternion(r: Array) -> Quaternion:
+def quaternion(r: Floats) -> Quaternion:
     """The quaternion of a rotation (3, 3), not normalized.
 
     Of the four ways to it the one that cancels nothing (Shepperd 1978).
@@ -67,7 +68,7 @@ def normalized(q: Quaternion) -> Quaternion:
     return x / length, y / length, z / length, w / length
 
 
-def rotation_of(q: Quaternion) -> Array:
+def rotation_of(q: Quaternion) -> Floats:
     """(3, 3) of a quaternion of length 1."""
     x, y, z, w = q
     return np.array(

@@ -5,27 +5,26 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ibr_ref.array_types import Floats
 
 
-def cross(a: Array, b: Array) -> Array:
+def cross(a: Floats, b: Floats) -> Floats:
     """The cross product of two (3,) vectors."""
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def dot(a: Array, b: Array) -> float:
+def dot(a: Floats, b: Floats) -> float:
     """The dot product of two (3,) vectors."""
     return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
-def length(a: Array) -> float:
+def length(a: Floats) -> float:
     """The length of a (3,) vector."""
     return math.sqrt(dot(a, a))
 
 
-def unit(a: Array) -> Array:
+def unit(a: Floats) -> Floats:
     """The (3,) vector, not zero, divided by its length.
 
     Scaled by a power of two first, which is exact, so that no square over- or underflows.

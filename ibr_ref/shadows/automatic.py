@@ -15,15 +15,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.shadows import folds, maps, residuals, training
 from ibr_ref.shadows.controls import along, bounds, identity, on_lattice, turned
 from ibr_ref.shadows.draw import grid_triangles
 from ibr_ref.shadows.registration import Task, register
 from ibr_ref.shadows.selection import HeldOut, Pace, Reach, best_of
 
-Array = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
 """Called as work goes on, with what is being done, how many steps are done, and of how many."""
 
@@ -68,9 +67,9 @@ class Nine:
 
     view: maps.View
     """What the maps are rendered of, at any size."""
-    positions: Array
+    positions: Floats
     """(3, 3, 2) of the nine maps."""
-    silhouettes: Array
+    silhouettes: Floats
     """(3, 3, S, S) theirs, 0 to 1, as sharp as the maps."""
     samples: int
     """k of the maps."""
@@ -86,7 +85,7 @@ class Candidate(NamedTuple):
     """Points (3, 3, R, C, 2), and how they came about."""
 
     name: str
-    points: Array
+    points: Floats
 
 
 class _Work:
@@ -110,7 +109,7 @@ class _Work:
         places = training.places(nine.view, nine.positions, nine.pace.depths, size, level.side, phase)
         return Task(images.reshape(9, -1), places, self.forms)
 
-    def run(self, points: Array, levels: tuple[Level, ...], what: str) -> Array:
+    def run(self, points: Floats, levels: tuple[Level, ...], what: str) -> Floats:
         for level in levels:
             if level not in self.tasks:
                 self.tasks[level] = self.task(level)
@@ -125,7 +124,7 @@ class _Work:
         self.done += 1
 
 
-def _finer(silhouettes: Array) -> int:
+def _finer(silhouettes: Floats) -> int:
     """1, 2 or 4: so many times finer a small shadow is registered, to have as many texels as a large one."""
     extents = [
         np.ptp(np.flatnonzero(image.any(axis=axis))) + 1
@@ -137,7 +136,7 @@ def _finer(silhouettes: Array) -> int:
     return 1 if largest > _SMALL else 2 if largest > _SMALL / 2.0 else 4
 
 
-def _starts(nine: Nine, boxes: Array | None, rows: int, columns: int) -> list[Candidate]:
+def _starts(nine: Nine, boxes: Floats | None, rows: int, columns: int) -> list[Candidate]:
     """What registration is started from."""
     found = [
         Candidate("rows downwards", bounds(nine.silhouettes, rows, columns, boxes)),
@@ -163,7 +162,7 @@ def _finished(nine: Nine, recipe: Recipe, starts: Sequence[Candidate], progress:
     return [Candidate(f"registered, {starts[better].name}", points), *coarse]
 
 
-def snapped(points: Array, size: int, forms: Array = folds.EVEN) -> Array:
+def snapped(points: Floats, size: int, forms: Floats = folds.EVEN) -> Floats:
     """Points on the lattice of the window; the corners of triangles that would fold by that stay where they are."""
     moved, exact = on_lattice(points, size), np.zeros(points.shape[2:4], np.bool_)
     number = np.arange(exact.size).reshape(exact.shape)
@@ -180,7 +179,7 @@ def snapped(points: Array, size: int, forms: Array = folds.EVEN) -> Array:
 class Placed(NamedTuple):
     """What `place` gives."""
 
-    points: Array
+    points: Floats
     """(3, 3, R, C, 2) on the lattice of the window."""
     chosen: Reach
     others: tuple[Reach, ...]
@@ -209,7 +208,7 @@ def place(quality: str, nine: Nine, grid: tuple[int, int], progress: Progress | 
     return Placed(candidates[best].points, tried[best].reach, tuple(others))
 
 
-def _simple(nine: Nine, boxes: Array | None, rows: int, columns: int) -> list[Candidate]:
+def _simple(nine: Nine, boxes: Floats | None, rows: int, columns: int) -> list[Candidate]:
     """What registration must be better than."""
     return [
         Candidate("bounds", bounds(nine.silhouettes, rows, columns, boxes)),
@@ -218,7 +217,7 @@ def _simple(nine: Nine, boxes: Array | None, rows: int, columns: int) -> list[Ca
 
 
 def _registered(
-    quality: str, nine: Nine, boxes: Array | None, grid: tuple[int, int], progress: Progress | None
+    quality: str, nine: Nine, boxes: Floats | None, grid: tuple[int, int], progress: Progress | None
 ) -> list[Candidate]:
     """What registration comes to, the finished one first; and the caster's own box."""
     (rows, columns), found = grid, []

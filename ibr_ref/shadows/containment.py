@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ibr_ref.array_types import Floats
 
 _TOUCHES = 1e-9
 """Distance from a triangle, as a share of its size, that counts as on it: rounding of its corners."""
@@ -16,16 +16,16 @@ _TOUCHES = 1e-9
 class Solid(NamedTuple):
     """A mesh in world space, and the box around it."""
 
-    vertices: Array
+    vertices: Floats
     """(V, 3)."""
     triangles: NDArray[np.int32]
     """(T, 3)."""
-    low: Array
-    high: Array
+    low: Floats
+    high: Floats
     """(3,) each, with room for rounding."""
 
 
-def solid(vertices: Array, triangles: NDArray[np.int32]) -> Solid:
+def solid(vertices: Floats, triangles: NDArray[np.int32]) -> Solid:
     """A mesh to ask `touched` and `contains` about."""
     corners = vertices[np.unique(triangles)]
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -33,16 +33,16 @@ def solid(vertices: Array, triangles: NDArray[np.int32]) -> Solid:
     return Solid(vertices, triangles, low - slack, high + slack)
 
 
-def _in_box(mesh: Solid, point: Array) -> bool:
+def _in_box(mesh: Solid, point: Floats) -> bool:
     return bool(((mesh.low <= point) & (point <= mesh.high)).all())
 
 
-def _corners(mesh: Solid, point: Array) -> Array:
+def _corners(mesh: Solid, point: Floats) -> Floats:
     """(3, T, 3) corners seen from the point."""
     return np.moveaxis(mesh.vertices[mesh.triangles] - point, 1, 0)
 
 
-def touched(mesh: Solid, point: Array) -> int | None:
+def touched(mesh: Solid, point: Floats) -> int | None:
     """Index of the first triangle that a point lies on, if any; triangles without an area have no points."""
     if not _in_box(mesh, point):
         return None
@@ -56,7 +56,7 @@ def touched(mesh: Solid, point: Array) -> int | None:
     return int(on[0]) if len(on) else None
 
 
-def contains(mesh: Solid, point: Array) -> bool:
+def contains(mesh: Solid, point: Floats) -> bool:
     """Whether a mesh surrounds a point: the solid angle that it covers there is more than half of the sphere.
 
     So a closed mesh contains its inside, however it is oriented; an open one what lies well behind its surface.

@@ -10,12 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.pipeline.triangles import SUBPIXELS
 from ibr_ref.shadows.draw import grid_triangles
-
-Array = NDArray[np.float64]
 
 _LEAST_GAP = 1.0 / 64.0
 """Between the lines of a grid, as a share of the map."""
@@ -27,16 +25,16 @@ _PADDING = 1.0 / 64.0
 """Around the silhouette, so that its outline is not on the border of a cell."""
 
 
-def regular(rows: int, columns: int) -> Array:
+def regular(rows: int, columns: int) -> Floats:
     """(R, C, 2) evenly spaced points: the grid of a warp that changes nothing."""
     return _crossing(np.linspace(0.0, 1.0, columns), np.linspace(0.0, 1.0, rows))
 
 
-def _crossing(u: Array, v: Array) -> Array:
+def _crossing(u: Floats, v: Floats) -> Floats:
     return np.stack(np.meshgrid(u, v), axis=-1)
 
 
-def folded(grid: Array) -> int | None:
+def folded(grid: Floats) -> int | None:
     """Index of the first triangle of a grid whose area is not positive, in the order in which they are drawn, if any."""
     a, b, c = np.moveaxis(grid_triangles(grid), 1, 0)
     area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
@@ -44,18 +42,18 @@ def folded(grid: Array) -> int | None:
     return int(bad[0]) if len(bad) else None
 
 
-def on_lattice(controls: Array, size: int) -> Array:
+def on_lattice(controls: Floats, size: int) -> Floats:
     """The points moved to the 1/256 texel to which windows are snapped: warps to their own grids then change nothing."""
     steps = float(size * SUBPIXELS)
     return np.rint(controls * steps) / steps
 
 
-def identity(images: Array, rows: int, columns: int, boxes: Array | None = None) -> Array:
+def identity(images: Floats, rows: int, columns: int, boxes: Floats | None = None) -> Floats:
     """(3, 3, R, C, 2) regular grids: the maps are mixed where they are."""
     return np.broadcast_to(regular(rows, columns), (3, 3, rows, columns, 2)).copy()
 
 
-def bounds(images: Array, rows: int, columns: int, boxes: Array | None = None) -> Array:
+def bounds(images: Floats, rows: int, columns: int, boxes: Floats | None = None) -> Floats:
     """(3, 3, R, C, 2) grids whose inner lines divide the silhouette's bounding box; their outer ones are the border.
 
     Lines stay lines between the maps, so that nothing folds. For a map without a silhouette its own one of `boxes`
@@ -70,12 +68,12 @@ def bounds(images: Array, rows: int, columns: int, boxes: Array | None = None) -
     return np.array(grids)
 
 
-def _as_box(ends: Array) -> tuple[tuple[float, float], tuple[float, float]]:
+def _as_box(ends: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
     (u0, u1), (v0, v1) = np.minimum(np.maximum(ends, 0.0), 1.0).tolist()
     return (u0, u1), (v0, v1)
 
 
-def along(boxes: Array, rows: int, columns: int) -> Array:
+def along(boxes: Floats, rows: int, columns: int) -> Floats:
     """(3, 3, R, C, 2) grids whose inner lines divide the caster's own box in each map, wherever it reaches to.
 
     boxes (3, 3, 2, 2): [u or v][low, high] of `projected_boxes`. Lines beyond the map's border are pressed to it, so that
@@ -85,7 +83,7 @@ def along(boxes: Array, rows: int, columns: int) -> Array:
     return np.array(grids)
 
 
-def _pressed(ends: Array, count: int) -> Array:
+def _pressed(ends: Floats, count: int) -> Floats:
     """`count` coordinates from 0 to 1, the inner ones evenly from one end to the other where inside."""
     low, high = ends.tolist()
     inner = count - 2
@@ -99,7 +97,7 @@ def _pressed(ends: Array, count: int) -> Array:
     return np.array([*lines, 1.0])
 
 
-def _bounding_box(image: Array) -> tuple[tuple[float, float], tuple[float, float]] | None:
+def _bounding_box(image: Floats) -> tuple[tuple[float, float], tuple[float, float]] | None:
     """((u0, u1), (v0, v1)) of what is not empty; the lookups of a mask or of 1 - depth are > 0 there."""
     size = len(image)
     rows, columns = np.flatnonzero((image > 0.0).any(axis=1)), np.flatnonzero((image > 0.0).any(axis=0))
@@ -108,7 +106,7 @@ def _bounding_box(image: Array) -> tuple[tuple[float, float], tuple[float, float
     return (columns[0] / size, (columns[-1] + 1) / size), (rows[0] / size, (rows[-1] + 1) / size)
 
 
-def _lines(low: float, high: float, count: int) -> Array:
+def _lines(low: float, high: float, count: int) -> Floats:
     """`count` coordinates from 0 to 1, the inner ones evenly from `low` to `high` (one: in the middle), well apart."""
     inner = count - 2
     if inner < 1:
@@ -120,16 +118,16 @@ def _lines(low: float, high: float, count: int) -> Array:
     return np.concatenate([[0.0], np.linspace(low, high, inner), [1.0]])
 
 
-def turned(controls: Array) -> Array:
+def turned(controls: Floats) -> Floats:
     """Grids (3, 3, C, R, 2) as grids (3, 3, R, C, 2) whose rows go across: a quarter turn, so that areas stay positive."""
     return np.ascontiguousarray(controls[:, :, ::-1].swapaxes(2, 3))
 
 
-PLACEMENTS: dict[str, Callable[[Array, int, int, Array | None], Array]] = {"bounds": bounds, "identity": identity}
+PLACEMENTS: dict[str, Callable[[Floats, int, int, Floats | None], Floats]] = {"bounds": bounds, "identity": identity}
 """The automatic placements, by name: (3, 3, S, S) silhouettes, R and C to (3, 3, R, C, 2) controls."""
 
 
-def place(name: str, images: Array, rows: int, columns: int, boxes: Array | None = None) -> Array:
+def place(name: str, images: Floats, rows: int, columns: int, boxes: Floats | None = None) -> Floats:
     """Controls (3, 3, R, C, 2) by one of `PLACEMENTS`, on the lattice of the window.
 
     images (3, 3, S, S): silhouettes, 0 where empty and above it elsewhere. boxes as in `bounds`.

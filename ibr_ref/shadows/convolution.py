@@ -16,16 +16,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.sampling import clamped, footprint, lerp, mix
 from ibr_ref.shadows.maps import MOST_SAMPLES, View, levels, mask
 from ibr_ref.shadows.parallel import Frame, Window, clip_from_view
 
-Array = NDArray[np.float64]
 
-
-def light_image(half_edges: Array, window: Window, size: int, scale: float) -> Array:
+def light_image(half_edges: Floats, window: Window, size: int, scale: float) -> Floats:
     """(K, K), K odd: how much of the light, scaled to the places of a map (S, S), lies in each texel around its centre.
 
     Rendered as everything is, with 15 x 15 samples a texel; the sum is 1. A light too small to be seen is one texel.
@@ -48,7 +47,7 @@ def light_image(half_edges: Array, window: Window, size: int, scale: float) -> A
     return np.asarray(image / image.sum())
 
 
-def plane_distances(distances: Array, occluder: float, count: int) -> Array:
+def plane_distances(distances: Floats, occluder: float, count: int) -> Floats:
     """(P,) distances of the planes that stand for receivers at the given ones, beyond the occluder's; one: the middle."""
     beyond = distances[distances > occluder]
     if not len(beyond):
@@ -58,7 +57,7 @@ def plane_distances(distances: Array, occluder: float, count: int) -> Array:
     return np.asarray(1.0 / (first * (1.0 - shares) + last * shares))
 
 
-def convolved(occluder: Array, frame: Frame, window: Window, distance: float, planes: Array) -> Array:
+def convolved(occluder: Floats, frame: Frame, window: Window, distance: float, planes: Floats) -> Floats:
     """(P, S, S) the shadow on each plane of receivers, of an occluder's mask (S, S) at a distance."""
     from scipy.signal import fftconvolve  # loads half of SciPy, which other shadows need not wait for
 
@@ -107,14 +106,14 @@ def _look_up(triangle, varyings, view, caster, low, high, occluder, ends, images
 
 def look_up(
     triangle: NDArray[np.int32],
-    varyings: Array,
+    varyings: Floats,
     caster: int,
     frame: Frame,
     window: Window,
     distance: float,
-    planes: Array,
-    images: Array,
-) -> Array:
+    planes: Floats,
+    images: Floats,
+) -> Floats:
     """(H, W) the shadow of what the camera sees, from the images (P, S, S) of the planes.
 
     triangle (H, W), varyings (H, W, 3 or more): those of the `Surface`; triangles from index `caster` on are lit, and so is

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ibr_ref.pipeline.culling import Culled, cut_triangles, fates_of_triangles
 from ibr_ref.pipeline.culling import culled as counted
@@ -13,8 +12,6 @@ from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.maps import positions
 from ibr_ref.shadows.samples import samples_of, seen_offset, widened_range
 from ibr_ref.shadows.vertex import place, to_clip
-
-Array = NDArray[np.float64]
 
 
 class Cut(NamedTuple):

@@ -17,13 +17,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.sampling import footprint, lerp
 from ibr_ref.pipeline.triangles import SUBPIXELS, Edges, columns_in_row, edges_in_row
 from ibr_ref.shadows.spans import live_columns, solid_range
-
-Array = NDArray[np.float64]
 
 BAND_ROWS = 8
 """Rows of the map that a thread draws at a time."""
@@ -38,11 +37,11 @@ class Image(NamedTuple):
 
     texels: NDArray[np.generic]
     """(S S) flat: bytes, or float64 where `levels` is None."""
-    levels: Array | None
+    levels: Floats | None
     """(256,) the values of the bytes; None: the texels are the values."""
     spans: NDArray[np.int32]
     """(S, 2) where each row may differ from what is outside of the mesh (`spans.spans`)."""
-    grid: Array
+    grid: Floats
     """(R, C, 2) control points (u, v) in [0, 1]^2."""
 
 
@@ -61,16 +60,16 @@ class _Source(NamedTuple):
     """An image as the kernel takes it."""
 
     texels: NDArray[np.generic]
-    levels: Array | None
+    levels: Floats | None
     spans: NDArray[np.int32]
-    corners: Array
+    corners: Floats
     """(T, 3, 2) texture coordinates of the triangles."""
 
 
 # --- The mesh --------------------------------------------------------------------------------------------------------
 
 
-def grid_triangles(grid: Array) -> Array:
+def grid_triangles(grid: Floats) -> Floats:
     """(2 (R-1) (C-1), 3, 2) corners of a grid's triangles, in the order in which they are drawn."""
     a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
     return np.stack([a, b, c, a, c, d], axis=2).reshape(-1, 3, 2)
@@ -312,7 +311,7 @@ def _source(image: Image | None) -> _Source | None:
 
 
 def draw(
-    first: Image, second: Image | None, share: float, target: Array, outside: float, out: Array
+    first: Image, second: Image | None, share: float, target: Floats, outside: float, out: Floats
 ) -> NDArray[np.int32]:
     """Warp an image from its grid to the grid `target`, into out (S, S); `outside`, 0 or 1, where no triangle is.
 

@@ -16,18 +16,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.shadows.draw import grid_triangles
 
-Array = NDArray[np.float64]
 
-
-def _forms() -> Array:
+def _forms() -> Floats:
     """(9, 4, 4) weights of the mixed areas of maps k and l in each coefficient, [3 m + n]: of degree m in t, n in s."""
     along = np.zeros((3, 2, 2))  # products of linear polynomials, by degree
     along[0, 0, 0] = along[2, 1, 1] = 1.0
     along[1, 0, 1] = along[1, 1, 0] = 0.5
-    forms: Array = np.einsum("mac,nbd->mnabcd", along, along).reshape(9, 4, 4)
+    forms: Floats = np.einsum("mac,nbd->mnabcd", along, along).reshape(9, 4, 4)
     return forms
 
 
@@ -37,7 +36,7 @@ EVEN = _FORMS[None].copy()
 """(1, 9, 4, 4) the forms at the even pace, of all cells of the positions."""
 
 
-def forms_of(depths: Array | None) -> Array:
+def forms_of(depths: Floats | None) -> Floats:
     """(4, 9, 4, 4) the forms of each cell, for the caster's depths (3, 3) in the nine maps; None: `EVEN`."""
     if depths is None:
         return EVEN
@@ -111,7 +110,7 @@ def _push_all(forms, corners, least, strength, matrix, gradient):
         _push(forms[e // count], corners[e], least, strength, matrix[e], gradient[e])
 
 
-def coefficients(corners: Array, forms: Array = EVEN) -> Array:
+def coefficients(corners: Floats, forms: Floats = EVEN) -> Floats:
     """(E, 9) Bernstein coefficients of twice the area, for corners (E, 4, 3, 2) in the maps 00, 10, 01, 11 of a cell.
 
     forms (F, 9, 4, 4): those of `forms_of`, of E / F triangles in a row each.
@@ -128,18 +127,18 @@ def four_grids(controls: NDArray[Any]) -> NDArray[Any]:
     return np.stack([np.stack([triangles[j + k // 2][i + k % 2] for k in range(4)], axis=1) for j, i in cells])
 
 
-def folding(controls: Array, forms: Array = EVEN) -> NDArray[np.bool_]:
+def folding(controls: Floats, forms: Floats = EVEN) -> NDArray[np.bool_]:
     """(4, T) which triangles of controls (3, 3, R, C, 2) may fold somewhere in a cell: all that do, and few others."""
     found = coefficients(four_grids(controls).reshape(-1, 4, 3, 2), forms)
     return np.asarray(~(found > 0.0).all(axis=1), np.bool_).reshape(4, -1)
 
 
-def unfolded(controls: Array, forms: Array = EVEN) -> bool:
+def unfolded(controls: Floats, forms: Floats = EVEN) -> bool:
     """Whether no triangle of controls (3, 3, R, C, 2) folds, at any place: sufficient, not necessary."""
     return not folding(controls, forms).any()
 
 
-def barrier(corners: Array, least: float, strength: float, forms: Array = EVEN) -> float:
+def barrier(corners: Floats, least: float, strength: float, forms: Floats = EVEN) -> float:
     """- strength sum log(coefficient - least); infinity where one is not above `least`."""
     room = coefficients(corners, forms) - least
     if not (room > 0.0).all():
@@ -148,7 +147,7 @@ def barrier(corners: Array, least: float, strength: float, forms: Array = EVEN) 
 
 
 def add_barrier(
-    corners: Array, least: float, strength: float, matrix: Array, gradient: Array, forms: Array = EVEN
+    corners: Floats, least: float, strength: float, matrix: Floats, gradient: Floats, forms: Floats = EVEN
 ) -> None:
     """Add the barrier's slope, and the part of its curvature that is never negative, to equations by element."""
     _push_all(forms, corners, least, strength, matrix, gradient)

@@ -13,15 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.pipeline.sampling import lerp
 from ibr_ref.shadows import haar, maps
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.prepared import source_of, texels_at, view_of
 from ibr_ref.shadows.samples import samples_of, widened_range
 
-Array = NDArray[np.float64]
-
-Lookup = Callable[[int, int], Array]
+Lookup = Callable[[int, int], Floats]
 """The map (S, S) of row j and column i, as numbers from 0 to 1."""
 
 
@@ -29,7 +28,7 @@ Lookup = Callable[[int, int], Array]
 class MapGrid:
     """n x n shadow maps, evenly spaced over the widened range of the object. Made by `prepare_grid`."""
 
-    ends: Array
+    ends: Floats
     """(2, 2) (x0, y0) and (x1, y1): the first and the last map's offsets."""
     count: int
     """n."""
@@ -57,19 +56,19 @@ class MapGrid:
             return self.held.nbytes
         return sum(blocks.nbytes for line in self.held for blocks in line)
 
-    def image(self, j: int, i: int) -> Array:
+    def image(self, j: int, i: int) -> Floats:
         """(S, S) one map, decoded."""
         if isinstance(self.held, np.ndarray):
             return maps.values(self.held[j, i], self.samples)
         return haar.decode(self.held[j][i], self.size)
 
 
-def ends_of(scene: Scene, params: Params) -> Array:
+def ends_of(scene: Scene, params: Params) -> Floats:
     """(2, 2) offsets of the first and the last map."""
     return np.stack(widened_range(scene, samples_of(scene, params)))
 
 
-def position(ends: Array, count: int, j: int, i: int) -> Array:
+def position(ends: Floats, count: int, j: int, i: int) -> Floats:
     """(2,) offset of the map of row j and column i."""
     return np.array([lerp(ends[0, k], ends[1, k], index / (count - 1)) for k, index in enumerate((i, j))])
 
@@ -78,7 +77,7 @@ def rendered(scene: Scene, params: Params) -> Lookup:
     """A lookup that renders a map when it is asked for, and holds none: the same values as those of `prepare_grid`."""
     ends, view = ends_of(scene, params), view_of(scene, params.map_size)
 
-    def image(j: int, i: int) -> Array:
+    def image(j: int, i: int) -> Floats:
         texels = texels_at(view, position(ends, params.grid_size, j, i), params)
         values = maps.values(texels, params.map_samples)
         if params.grid_storage == "raw":
@@ -130,7 +129,7 @@ def _cell(value: float, low: float, high: float, count: int) -> tuple[int, float
     return index, place - index
 
 
-def image_at(lookup: Lookup, ends: Array, count: int, offset: Array, mix: bool) -> Array:
+def image_at(lookup: Lookup, ends: Floats, count: int, offset: Floats, mix: bool) -> Floats:
     """(S, S) the map for an offset: the mix of the four around it, or the nearest."""
     i, s = _cell(float(offset[0]), ends[0, 0], ends[1, 0], count)
     j, t = _cell(float(offset[1]), ends[0, 1], ends[1, 1], count)

@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange, routine
-
-Array = NDArray[np.float64]
 
 BLOCK = 16
 _BITS = BLOCK * BLOCK // 8
@@ -168,7 +167,7 @@ def _decode(mean, start, data, out):
         _decode_blocks(mean, start, data, blocks_row, out)
 
 
-def encode(image: Array, threshold: float) -> Blocks:
+def encode(image: Floats, threshold: float) -> Blocks:
     """Compress a map (S, S) of numbers in [0, 1]."""
     count = (-(-len(image) // BLOCK)) ** 2
     mean, start = np.empty(count, np.uint8), np.empty(count, np.int32)
@@ -177,7 +176,7 @@ def encode(image: Array, threshold: float) -> Blocks:
     return Blocks(mean, start, data[:used].copy())
 
 
-def decode(blocks: Blocks, size: int) -> Array:
+def decode(blocks: Blocks, size: int) -> Floats:
     """The map (S, S), in [0, 1]."""
     out = np.empty((size, size))
     _decode(*blocks, out)

@@ -12,9 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device
-
-Array = NDArray[np.float64]
 
 _SLACK = 1e-9
 """By which boxes are wider, as a share of the whole: rounding in a box's test must not lose what is in it."""
@@ -26,16 +25,16 @@ DEEPEST = 64
 class Hierarchy(NamedTuple):
     """Triangles, ordered by the leaves that they are in."""
 
-    low: Array
-    high: Array
+    low: Floats
+    high: Floats
     """(B, 3) boxes, B = 2 L - 1 for L leaves."""
     starts: NDArray[np.int64]
     """(L + 1,) first triangle of each leaf, and their number."""
-    corners: Array
+    corners: Floats
     """(T, 3, 3) corner and component of each triangle."""
 
 
-def build(vertices: Array, triangles: NDArray[np.int32]) -> Hierarchy:
+def build(vertices: Floats, triangles: NDArray[np.int32]) -> Hierarchy:
     """The hierarchy of a mesh: vertices (V, 3), triangles (T, 3), T >= 1."""
     corners = vertices[triangles]
     levels = max(0, (len(corners) // 2).bit_length() - 1)
@@ -51,7 +50,7 @@ def build(vertices: Array, triangles: NDArray[np.int32]) -> Hierarchy:
     return Hierarchy(np.concatenate(low), np.concatenate(high), starts, corners)
 
 
-def _sorted(centroids: Array, levels: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _sorted(centroids: Floats, levels: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The triangles' order, and where each of the 2^levels leaves begins in it."""
     order = np.arange(len(centroids))
     starts = np.array([0, len(centroids)])

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ibr_ref.array_types import Floats
 
 _GOLDEN = 0.6180339887498949
 """(sqrt 5 - 1)/2: its multiples leave the smallest gaps modulo 1."""
 
 
-def lattice(count: int) -> Array:
+def lattice(count: int) -> Floats:
     """(N, 2) points in [-1, 1]^2, shares of two half-edges.
 
     The golden-ratio lattice: point i at ((i + 1/2)/N, (i + 1/2) golden modulo 1), so that any half-plane's share of the
@@ -22,8 +21,8 @@ def lattice(count: int) -> Array:
     return np.stack([2.0 * i / count - 1.0, 2.0 * (v - np.floor(v)) - 1.0], axis=1)
 
 
-def on_parallelogram(centre: Array, half_edges: Array, count: int) -> Array:
+def on_parallelogram(centre: Floats, half_edges: Floats, count: int) -> Floats:
     """(N, K) points centre + g_i a + g_j b, for a centre (K,) and the half-edges a and b (2, K)."""
     g = lattice(count)
-    points: Array = centre + (g[:, :1] * half_edges[0] + g[:, 1:] * half_edges[1])
+    points: Floats = centre + (g[:, :1] * half_edges[0] + g[:, 1:] * half_edges[1])
     return points

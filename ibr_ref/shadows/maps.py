@@ -10,13 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.clip import clip_triangles
 from ibr_ref.pipeline.triangles import Triangles, set_up
 from ibr_ref.pipeline.visibility import covered, visible
 from ibr_ref.shadows.vertex import place, to_clip
-
-Array = NDArray[np.float64]
 
 MOST_SAMPLES = 15
 """Largest k: the k x k samples of a texel are counted in a byte."""
@@ -25,18 +24,18 @@ MOST_SAMPLES = 15
 class View(NamedTuple):
     """What the maps are rendered of: the caster's model, the axes that it moves along, and the light's two matrices."""
 
-    vertices: Array
+    vertices: Floats
     """(V, 3) in model space."""
     triangles: NDArray[np.int32]
     """(T, 3)."""
-    axes: Array
+    axes: Floats
     """(2, 3) unit vectors in world space."""
-    view_from_world: Array
-    clip_from_view: Array
+    view_from_world: Floats
+    clip_from_view: Floats
     """(4, 4) each; the projection is square."""
 
 
-def positions(low: Array, high: Array, light: Array) -> Array:
+def positions(low: Floats, high: Floats, light: Floats) -> Floats:
     """(3, 3, 2) the object's offsets for the nine maps, [j, i] = (x_i, y_j), from three (2,) pairs along the two axes.
 
     The middle one is the light's own coordinate, clamped into the range; where it falls on an end, the range's middle.
@@ -48,17 +47,17 @@ def positions(low: Array, high: Array, light: Array) -> Array:
     return np.stack(np.meshgrid(*axes), axis=-1)
 
 
-def levels(k: int) -> Array:
+def levels(k: int) -> Floats:
     """(256,) coverage by the count of a texel's samples: count / k^2."""
     return np.arange(256) / float(k * k)
 
 
-def values(texels: NDArray[Any], k: int) -> Array:
+def values(texels: NDArray[Any], k: int) -> Floats:
     """A map's texels as numbers from 0 to 1: the coverage that counts of k x k samples stand for, or depths."""
     return levels(k)[texels] if texels.dtype == np.uint8 else np.asarray(texels, np.float64)
 
 
-def _triangles(view: View, offset: Array, size: int) -> Triangles:
+def _triangles(view: View, offset: Floats, size: int) -> Triangles:
     """The caster's triangles in a window of size x size."""
     clip = to_clip(place(view.vertices, view.axes, offset), view.view_from_world, view.clip_from_view)
     return set_up(clip_triangles(clip, np.empty((len(clip), 0)), view.triangles, size, size), size, size)
@@ -80,7 +79,7 @@ def _count(samples, k, counts):
         _count_row(samples, k, row, counts)
 
 
-def mask(view: View, offset: Array, size: int, k: int) -> NDArray[np.uint8]:
+def mask(view: View, offset: Floats, size: int, k: int) -> NDArray[np.uint8]:
     """(S, S) how many of a texel's k x k samples the caster covers: its silhouette.
 
     The samples are the pixel centres of a window of k S x k S.
@@ -93,12 +92,12 @@ def mask(view: View, offset: Array, size: int, k: int) -> NDArray[np.uint8]:
     return counts
 
 
-def depth(view: View, offset: Array, size: int) -> Array:
+def depth(view: View, offset: Floats, size: int) -> Floats:
     """(S, S) window depth of the caster; 1 where it is not."""
     return visible(_triangles(view, offset, size), size, size).depth
 
 
-def projected_boxes(view: View, positions: Array) -> Array | None:
+def projected_boxes(view: View, positions: Floats) -> Floats | None:
     """(3, 3, 2, 2) [u or v][low, high] of the corners of the caster's triangles in the nine maps, within them or not.
 
     None where a corner is not in front of the light at one of the positions (3, 3, 2).

@@ -9,9 +9,8 @@ do the shares; along y they are those between the ends of the two rows.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ibr_ref.array_types import Floats
 
 
 def share(fraction: float, w0: float, w1: float) -> float:
@@ -19,7 +18,7 @@ def share(fraction: float, w0: float, w1: float) -> float:
     return fraction * w1 / ((1.0 - fraction) * w0 + fraction * w1)
 
 
-def shares(fraction: Array, around: Array | None) -> Array:
+def shares(fraction: Floats, around: Floats | None) -> Floats:
     """(3,) the next map's share in the upper row of a cell, in its lower row, and the lower row's share.
 
     fraction (2,): s and t; around (2, 2): depths at the cell's corners, [0, 1] the next along x; None: s, s, t.
@@ -32,17 +31,17 @@ def shares(fraction: Array, around: Array | None) -> Array:
     return np.array([share(s, w00, w10), share(s, w01, w11), share(t, upper, lower)])
 
 
-def cell_of(array: Array, i: int, j: int) -> Array:
+def cell_of(array: Floats, i: int, j: int) -> Floats:
     """(2, 2) the corners of cell (i, j), x first, of what is (3, 3)."""
     return array[j : j + 2, i : i + 2]
 
 
-def weights(fractions: Array, around: Array | None) -> Array:
+def weights(fractions: Floats, around: Floats | None) -> Floats:
     """(N, 4) how much of the maps 00, 10, 01, 11 is in the mix, for fractions (N, 2) in one cell."""
     s, t = fractions.T
     even = np.stack([(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t], axis=1)
     if around is None:
         return even
     weighed = even * around.reshape(4)
-    total: Array = weighed[:, 0] + weighed[:, 1] + weighed[:, 2] + weighed[:, 3]
+    total: Floats = weighed[:, 0] + weighed[:, 1] + weighed[:, 2] + weighed[:, 3]
     return np.asarray(weighed / total[:, None])

@@ -12,10 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.pipeline.transform import transformed
 from ibr_ref.shadows.maps import View
-
-Array = NDArray[np.float64]
 
 _ROOM = 1e-3
 """Between caster and clipping planes, as a share of the distance."""
@@ -27,29 +26,29 @@ _BORDER = 0.01
 class Frame(NamedTuple):
     """The light's plane and its centre."""
 
-    view_from_world: Array
+    view_from_world: Floats
     """(4, 4) the third row is -h."""
-    half_edges: Array
+    half_edges: Floats
     """(2, 2) a and b in the plane."""
 
 
 class Window(NamedTuple):
     """The map's frustum, from the light's centre."""
 
-    low: Array
-    high: Array
+    low: Floats
+    high: Floats
     """(2,) places of its border."""
     near: float
     far: float
     """The caster's nearest and farthest distance."""
 
 
-def distances(frame: Frame, points: Array) -> Array:
+def distances(frame: Frame, points: Floats) -> Floats:
     """(N,) h of world points (N, 3)."""
     return -transformed(frame.view_from_world, points)[:, 2]
 
 
-def window_around(frame: Frame, vertices: Array, farthest: float) -> Window:
+def window_around(frame: Frame, vertices: Floats, farthest: float) -> Window:
     """The window around a caster's corners (U, 3) in front of the light, and around its penumbra as far as `farthest`."""
     seen = transformed(frame.view_from_world, vertices)
     h = -seen[:, 2]
@@ -61,7 +60,7 @@ def window_around(frame: Frame, vertices: Array, farthest: float) -> Window:
     return Window(low - border, high + border, near, far)
 
 
-def clip_from_view(window: Window) -> Array:
+def clip_from_view(window: Window) -> Floats:
     """(4, 4) the projection onto the window, off the axis."""
     (x0, y0), (x1, y1) = window.low, window.high
     n, f = window.near * (1.0 - _ROOM), window.far * (1.0 + _ROOM)
@@ -75,13 +74,13 @@ def clip_from_view(window: Window) -> Array:
     )
 
 
-def view_of_caster(frame: Frame, window: Window, vertices: Array, triangles: NDArray[np.int32]) -> View:
+def view_of_caster(frame: Frame, window: Window, vertices: Floats, triangles: NDArray[np.int32]) -> View:
     """What the map is rendered of: vertices (V, 3) in world space."""
     return View(vertices, triangles, np.zeros((2, 3)), frame.view_from_world, clip_from_view(window))
 
 
-def to_distance(depth: Array, window: Window) -> Array:
+def to_distance(depth: Floats, window: Window) -> Floats:
     """(S, S) distances h from window depths; infinite where nothing is."""
     n, f = window.near * (1.0 - _ROOM), window.far * (1.0 + _ROOM)
-    h: Array = n * f / (f - depth * (f - n))
+    h: Floats = n * f / (f - depth * (f - n))
     return np.where(depth < 1.0, h, np.inf)

@@ -19,21 +19,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.sampling import footprint, lerp, nearest_index
 from ibr_ref.shadows.lattice import on_parallelogram
 from ibr_ref.shadows.parallel import Frame, Window
 
-Array = NDArray[np.float64]
-
 
 class Filter(NamedTuple):
     """How the map is asked."""
 
-    search: Array
+    search: Floats
     """(N, 2) points of the light, for the blocker search."""
-    points: Array
+    points: Floats
     """(M, 2) points of the light, for the filter."""
     bias: float
     """Of distances, world units."""
@@ -42,9 +41,9 @@ class Filter(NamedTuple):
 class Softened(NamedTuple):
     """What is found of each pixel."""
 
-    blocker: Array
+    blocker: Floats
     """(H, W) b; infinite where no blocker is."""
-    shadow: Array
+    shadow: Floats
     """(H, W)."""
 
 
@@ -142,11 +141,11 @@ def _soften(triangle, varyings, view, caster, low, high, nearest, texels, size, 
 
 def soften(
     triangle: NDArray[np.int32],
-    varyings: Array,
+    varyings: Floats,
     caster: int,
     frame: Frame,
     window: Window,
-    distances: Array,
+    distances: Floats,
     wanted: Filter,
 ) -> Softened:
     """The shadow of what the camera sees, from a map of the caster's distances (S, S), infinite where it is not.

@@ -14,6 +14,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.io.files import contents, naming
 from ibr_ref.io.outputs import atomic
 from ibr_ref.pipeline.transform import transformed
@@ -28,8 +29,6 @@ from ibr_ref.shadows.spans import spans
 from ibr_ref.shadows.vertex import place
 from ibr_ref.shadows.warp import Nine
 
-Array = NDArray[np.float64]
-
 GIVEN = "given"
 """The placement of control points that were handed in, or of which a file does not say it."""
 
@@ -41,11 +40,11 @@ class Maps:
     Raises ValueError for arrays of other shapes, positions out of order, and grids that leave the map or are folded.
     """
 
-    positions: Array
+    positions: Floats
     """(3, 3, 2) the object's offsets, [j, i] = (x_i, y_j)."""
     texels: NDArray[Any]
     """(3, 3, S, S): uint8 counts of covered samples for masks, float64 window depths otherwise."""
-    controls: Array
+    controls: Floats
     """(3, 3, R, C, 2) control points (u, v) in [0, 1]^2."""
     content: str
     """"mask" | "depth"."""
@@ -102,12 +101,12 @@ class Maps:
         return self.positions[0, :, 0].tolist(), self.positions[:, 0, 1].tolist()
 
     @property
-    def levels(self) -> Array | None:
+    def levels(self) -> Floats | None:
         """(256,) the values of the texels' bytes; None for depths."""
         return maps.levels(self.samples) if self.content == "mask" else None
 
     @property
-    def image(self) -> Array:
+    def image(self) -> Floats:
         """(3, 3, S, S) the maps as numbers from 0 to 1."""
         return maps.values(self.texels, self.samples)
 
@@ -178,7 +177,7 @@ def _check_archive(data: bytes) -> None:
         raise ValueError(f"found {sum(sizes.values())} bytes unpacked, allowed: at most {_MOST_BYTES}")
 
 
-def check_controls(controls: Array) -> None:
+def check_controls(controls: Floats) -> None:
     """Raise ValueError for nine grids of another shape, with points outside the map, or folded ones."""
     if controls.ndim != 5 or controls.shape[:2] != (3, 3) or controls.shape[4] != 2:
         raise checks.reject("controls.shape", controls.shape, "(3, 3, R, C, 2)")
@@ -193,7 +192,7 @@ def check_controls(controls: Array) -> None:
             check_unfolded(f"controls[{j}, {i}]", controls[j, i])
 
 
-def check_unfolded(field: str, grid: Array) -> None:
+def check_unfolded(field: str, grid: Floats) -> None:
     """Raise ValueError for a grid (R, C, 2) with a triangle whose area is not positive."""
     triangle = placement.folded(grid)
     if triangle is not None:
@@ -203,7 +202,7 @@ def check_unfolded(field: str, grid: Array) -> None:
         raise checks.reject(field, which, "triangles of positive area, v downwards")
 
 
-def view_of(scene: Scene, size: int, position: Array | None = None) -> maps.View:
+def view_of(scene: Scene, size: int, position: Floats | None = None) -> maps.View:
     """What the maps are rendered of, from the light's centre or from another position."""
     camera = scene.light.camera(size, position)
     return maps.View(
@@ -215,7 +214,7 @@ def view_of(scene: Scene, size: int, position: Array | None = None) -> maps.View
     )
 
 
-def depths_of(scene: Scene, params: Params, positions: Array) -> Array | None:
+def depths_of(scene: Scene, params: Params, positions: Floats) -> Floats | None:
     """(3, 3) depth of the middle of the caster's box along the light's view axis, for the nine maps; None: even pace.
 
     Raises ValueError where it is not in front of the light.
@@ -224,7 +223,7 @@ def depths_of(scene: Scene, params: Params, positions: Array) -> Array | None:
         return None
     middle, view = scene.caster.bounds.mean(axis=0), scene.light.camera(1).view_from_world
     places = np.stack([place(middle, scene.axes, offset) for offset in positions.reshape(-1, 2)])
-    depths: Array = -transformed(view, places)[:, 2].reshape(3, 3)
+    depths: Floats = -transformed(view, places)[:, 2].reshape(3, 3)
     if not (depths > 0.0).all():
         behind = positions.reshape(-1, 2)[int(depths.argmin())].tolist()
         found = f"projective with the caster at offset {tuple(behind)} not in front of the light"
@@ -249,7 +248,7 @@ def source_of(scene: Scene) -> str:
     return found
 
 
-def texels_at(view: maps.View, offset: Array, params: Params) -> NDArray[Any]:
+def texels_at(view: maps.View, offset: Floats, params: Params) -> NDArray[Any]:
     """(S, S) one map of the caster at an offset: uint8 counts of samples, or float64 depths."""
     if params.content == "depth":
         return maps.depth(view, offset, params.map_size)
@@ -301,10 +300,10 @@ def _placed(
     scene: Scene,
     params: Params,
     view: maps.View,
-    positions: Array,
-    silhouettes: Array,
+    positions: Floats,
+    silhouettes: Floats,
     progress: automatic.Progress | None,
-) -> tuple[Array, Placement | None]:
+) -> tuple[Floats, Placement | None]:
     """Control points by a placement's name, and what became of it."""
     size = (params.rows, params.columns)
     if name in placement.PLACEMENTS:
@@ -322,7 +321,7 @@ def _placed(
     )
 
 
-def _points(value: str | ArrayLike, params: Params) -> str | Array:
+def _points(value: str | ArrayLike, params: Params) -> str | Floats:
     """The name of a placement, or points of the right shape."""
     if isinstance(value, str):
         checks.choice("controls", value, (*automatic.RECIPES, *placement.PLACEMENTS))

@@ -7,11 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.sampling import footprint, lerp, mix, nearest_index
-
-Array = NDArray[np.float64]
 
 MASK, DEPTH, DEPTH_PCF = range(3)
 
@@ -33,13 +32,13 @@ class Lookup(NamedTuple):
 class Projected(NamedTuple):
     """The arrays of the stage, for one light sample; but for `shadow` empty where they are not kept."""
 
-    coord: Array
+    coord: Floats
     """(H, W, 3) s, t and r; 0 where no surface is."""
-    shadow: Array
+    shadow: Floats
     """(H, W) 0 lit to 1."""
-    margin: Array
+    margin: Floats
     """(H, W)."""
-    texel_margin: Array
+    texel_margin: Floats
     """(H, W)."""
 
 
@@ -191,10 +190,10 @@ def _project(triangle, varyings, view, clip, texels, size, lookup, result):
 
 def project(
     triangle: NDArray[np.int32],
-    varyings: Array,
-    view_from_world: Array,
-    clip_from_view: Array,
-    image: Array,
+    varyings: Floats,
+    view_from_world: Floats,
+    clip_from_view: Floats,
+    image: Floats,
     lookup: Lookup,
 ) -> Projected:
     """Project a map (S, S) from a light with these matrices onto what the camera sees.

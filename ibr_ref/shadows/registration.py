@@ -13,11 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.shadows import folds, residuals, solver
 from ibr_ref.shadows.folds import four_grids
 from ibr_ref.shadows.residuals import LOCAL, Places
-
-Array = NDArray[np.float64]
 
 _LEAST_AREA = 2e-5
 """Twice a triangle's area, as a share of the map's: 1.3 texels of 256 x 256. Lower where a start has less."""
@@ -42,22 +41,22 @@ _SOLVER_STEPS, _SOLVER_TOLERANCE = 100, 1e-3
 class Task(NamedTuple):
     """What is registered."""
 
-    images: Array
+    images: Floats
     """(9, S S) the nine maps."""
     places: Places
     """Training places, and what was rendered there."""
-    forms: Array = folds.EVEN
+    forms: Floats = folds.EVEN
     """Of the triangles' areas, by the pace between the maps (`folds.forms_of`)."""
 
 
 class _Slope(NamedTuple):
     """The normal equations at one set of points."""
 
-    matrix: Array
+    matrix: Floats
     """(E, 24, 24)."""
-    gradient: Array
+    gradient: Floats
     """(9 R C 2,)."""
-    diagonal: Array
+    diagonal: Floats
     """(9 R C 2,) of the matrix of all unknowns."""
 
 
@@ -66,7 +65,7 @@ def _members(shape: tuple[int, ...]) -> NDArray[np.int64]:
     return four_grids(np.arange(int(np.prod(shape))).reshape(shape)).reshape(-1, LOCAL)
 
 
-def _free(controls: Array) -> Array:
+def _free(controls: Floats) -> Floats:
     """(9 R C 2,) 1 where a coordinate may change: the border's points stay on the border, its corners where they are."""
     free = np.ones(controls.shape)
     for border in (np.s_[:, :, 0], np.s_[:, :, -1], np.s_[:, :, :, 0], np.s_[:, :, :, -1]):
@@ -74,7 +73,7 @@ def _free(controls: Array) -> Array:
     return free.reshape(-1)
 
 
-def _stiffness() -> Array:
+def _stiffness() -> Floats:
     """(24, 24) of an element: squared differences of the steps along a triangle's sides, in its four maps."""
     sides = np.array([[2.0, -1.0, -1.0], [-1.0, 2.0, -1.0], [-1.0, -1.0, 2.0]])
     return np.asarray(np.kron(np.eye(4), np.kron(sides, np.eye(2))), np.float64)
@@ -83,21 +82,21 @@ def _stiffness() -> Array:
 class _Registration:
     """A task, and what does not change while points move."""
 
-    def __init__(self, controls: Array, task: Task) -> None:
+    def __init__(self, controls: Floats, task: Task) -> None:
         self.task = task
         self.members, self.free, self.stiffness = _members(controls.shape), _free(controls), _stiffness()
         self.least = min(_LEAST_AREA, folds.coefficients(self.corners(controls), task.forms).min() / 4.0)
 
-    def corners(self, controls: Array) -> Array:
+    def corners(self, controls: Floats) -> Floats:
         return four_grids(controls).reshape(-1, 4, 3, 2)
 
-    def objective(self, controls: Array) -> float:
+    def objective(self, controls: Floats) -> float:
         fence = folds.barrier(self.corners(controls), self.least, _BARRIER, self.task.forms)
         if fence == np.inf:
             return fence
         return fence + residuals.cost(self.task.images, self.task.places, controls) / 2.0
 
-    def slope(self, controls: Array) -> _Slope:
+    def slope(self, controls: Floats) -> _Slope:
         sums = residuals.equations(self.task.images, self.task.places, controls)
         corners, forms = self.corners(controls), self.task.forms
         folds.add_barrier(corners, self.least, _BARRIER, sums.matrix, sums.gradient, forms)
@@ -105,7 +104,7 @@ class _Registration:
         gradient = solver.scatter(sums.gradient, self.members, controls.size)
         return _Slope(sums.matrix, gradient, solver.scatter(diagonals, self.members, controls.size))
 
-    def step(self, slope: _Slope, damping: float) -> Array:
+    def step(self, slope: _Slope, damping: float) -> Floats:
         level = sum(slope.diagonal.tolist()) / len(slope.diagonal)
         matrix = slope.matrix + damping * _SMOOTHNESS * level * self.stiffness
         ridge = damping * (slope.diagonal + _RIDGE * level)
@@ -113,7 +112,7 @@ class _Registration:
         return solver.solve(equations, -slope.gradient, _SOLVER_STEPS, _SOLVER_TOLERANCE)
 
 
-def register(controls: Array, task: Task, steps: int, began: Callable[[], None]) -> Array:
+def register(controls: Floats, task: Task, steps: int, began: Callable[[], None]) -> Floats:
     """Controls (3, 3, R, C, 2) with which the maps, warped to the places, are nearer to what was rendered there.
 
     At most `steps` steps, each after a call of `began`. Points on the border slide along it. The controls that are given

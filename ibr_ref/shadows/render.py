@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.io import Frame
 from ibr_ref.scene import checks
 from ibr_ref.shadows import grid
@@ -21,8 +22,6 @@ from ibr_ref.shadows.samples import Sample, samples_of, seen_offset
 from ibr_ref.shadows.surface import Object, Surface, see
 from ibr_ref.shadows.vertex import place
 from ibr_ref.shadows.warp import Warped, grids_at, locate, shares_at, warp_stage
-
-Array = NDArray[np.float64]
 
 
 def render(
@@ -58,7 +57,7 @@ def render(
     return Frame(color=color, depth=surface.depth, stages=kept)
 
 
-def shadow_maps(scene: Scene, params: Params | None = None, *, maps: Maps | MapGrid | None = None) -> Array:
+def shadow_maps(scene: Scene, params: Params | None = None, *, maps: Maps | MapGrid | None = None) -> Floats:
     """The maps (N, S, S) that `render` projects, one for each light sample; maps as there."""
     params = Params() if params is None else params
     return np.stack(_images(scene, params, samples_of(scene, params), maps, stages=False)[0])
@@ -69,7 +68,7 @@ def shadow_maps(scene: Scene, params: Params | None = None, *, maps: Maps | MapG
 
 def _images(
     scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None, stages: bool
-) -> tuple[list[Array], dict[str, Any]]:
+) -> tuple[list[Floats], dict[str, Any]]:
     """A map (S, S) for each light sample, and the stages up to it."""
     if params.method == "warp":
         return _warped(scene, params, samples, _nine(scene, params, samples, maps), stages)
@@ -82,7 +81,7 @@ def _images(
     return images, {"warp.image": _per_sample(images)} if stages else {}
 
 
-def _direct(scene: Scene, params: Params, sample: Sample) -> Array:
+def _direct(scene: Scene, params: Params, sample: Sample) -> Floats:
     """The map as it is rendered from the sample, of the caster where it is."""
     view = view_of(scene, params.map_size, sample.position)
     return values(texels_at(view, np.asarray(scene.offset), params), params.map_samples)
@@ -114,7 +113,7 @@ def _check_made_for(scene: Scene, params: Params, given: dict[str, object], sour
         raise checks.reject("maps", "those of another caster, other axes or another light", "maps of this scene")
 
 
-def _check_range(scene: Scene, samples: Sequence[Sample], ends: Array) -> None:
+def _check_range(scene: Scene, samples: Sequence[Sample], ends: Floats) -> None:
     for sample in samples:
         offset = seen_offset(scene, sample)
         if not ((ends[0] <= offset) & (offset <= ends[1])).all():
@@ -128,7 +127,7 @@ def _check_range(scene: Scene, samples: Sequence[Sample], ends: Array) -> None:
 
 def _warped(
     scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps, stages: bool
-) -> tuple[list[Array], dict[str, Any]]:
+) -> tuple[list[Floats], dict[str, Any]]:
     warps = []
     depths, nearest = depths_of(scene, params, maps.positions), params.policy == "nearest"
     for i, sample in enumerate(samples):
@@ -144,13 +143,13 @@ def _warped(
     return images, {**made, "maps.depths": depths, **_grouped("warp", Warped._fields, warps)}
 
 
-def _check_grids(controls: Array, cell: NDArray[np.int32], three: Array, sample: int) -> None:
+def _check_grids(controls: Floats, cell: NDArray[np.int32], three: Floats, sample: int) -> None:
     row_grids, between = grids_at(controls, cell, three)
     for name, points in (("row_grids[0]", row_grids[0]), ("row_grids[1]", row_grids[1]), ("grid", between)):
         check_unfolded(f"controls (warp.{name} of light sample {sample})", points)
 
 
-def _from_grid(scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None) -> list[Array]:
+def _from_grid(scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None) -> list[Floats]:
     lookup, ends = grid.rendered(scene, params), grid.ends_of(scene, params)
     if maps is not None:
         if not isinstance(maps, MapGrid):

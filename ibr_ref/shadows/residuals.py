@@ -18,12 +18,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import footprint
 from ibr_ref.pipeline.triangles import SUBPIXELS, columns_in_row, edges_in_row
 from ibr_ref.shadows.folds import four_grids
-
-Array = NDArray[np.float64]
 
 LOCAL = 24
 """Numbers that an element knows: [map 00, 10, 01, 11][corner][u, v]."""
@@ -34,27 +33,27 @@ class Places(NamedTuple):
 
     starts: NDArray[np.int64]
     """(5,) the places of cell q are starts[q] to starts[q + 1] - 1; q = 2 j + i."""
-    weights: Array
+    weights: Floats
     """(N, 4) of the maps 00, 10, 01, 11 in the mix."""
-    targets: Array
+    targets: Floats
     """(N, S, S) the rendered maps."""
 
 
 class Equations(NamedTuple):
     """Sums over the texels of each element."""
 
-    matrix: Array
+    matrix: Floats
     """(E, 24, 24) J^T J; no rows where only the cost is asked for."""
-    gradient: Array
+    gradient: Floats
     """(E, 24) J^T r."""
-    cost: Array
+    cost: Floats
     """(E,) r^T r."""
 
 
 class _Elements(NamedTuple):
     """The triangles of all elements at all places."""
 
-    sources: Array
+    sources: Floats
     """(4, T, 4, 3, 2) texture coordinates in the four maps."""
     x: NDArray[np.int64]
     """(N, T, 3) corners in the window, in 1/256 texel."""
@@ -181,7 +180,7 @@ def _run(images, places, elements, matrix, gradient, cost):
         _run_element(images, places, elements, e, matrix, gradient, cost)
 
 
-def _elements(controls: Array, places: Places) -> _Elements:
+def _elements(controls: Floats, places: Places) -> _Elements:
     sources, size = four_grids(controls), places.targets.shape[1]
     windows = []
     for cell in range(4):
@@ -192,7 +191,7 @@ def _elements(controls: Array, places: Places) -> _Elements:
     return _Elements(sources, np.ascontiguousarray(window[..., 0]), np.ascontiguousarray(window[..., 1]))
 
 
-def equations(images: Array, places: Places, controls: Array) -> Equations:
+def equations(images: Floats, places: Places, controls: Floats) -> Equations:
     """The normal equations of warped against rendered maps. images (9, S S), controls (3, 3, R, C, 2)."""
     elements = _elements(controls, places)
     count = 4 * elements.sources.shape[1]
@@ -201,7 +200,7 @@ def equations(images: Array, places: Places, controls: Array) -> Equations:
     return out
 
 
-def cost(images: Array, places: Places, controls: Array) -> float:
+def cost(images: Floats, places: Places, controls: Floats) -> float:
     """The sum of squares alone."""
     elements = _elements(controls, places)
     costs = np.zeros(4 * elements.sources.shape[1])

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.lighting import unit
 from ibr_ref.pipeline.merge import blend_add
 from ibr_ref.shadows.surface import Surface
 
-Array = NDArray[np.float64]
 
-
-def accumulate(total: Array, shadow: Array, count: int, unorm8: bool) -> None:
+def accumulate(total: Floats, shadow: Floats, count: int, unorm8: bool) -> None:
     """Add one of `count` shadows (H, W) to the sum, with alpha = 1/count."""
     blend_add(total.reshape(-1), shadow.reshape(-1), 1.0 / count, unorm8)
 
@@ -52,7 +50,7 @@ def _resolve(surface, shadow, eye, light, ambient, background, color):
         _resolve_row(surface, shadow, eye, light, ambient, background, row, color)
 
 
-def resolve(surface: Surface, shadow: Array, eye: Array, light: Array, ambient: float, background: Array) -> Array:
+def resolve(surface: Surface, shadow: Floats, eye: Floats, light: Floats, ambient: float, background: Floats) -> Floats:
     """(H, W, 3) the picture: surface colour times brightness, for the eye (4,) and the light's centre (3,)."""
     (color,) = memory.arrays([(np.float64, (*shadow.shape, 3))])
     _resolve(surface, shadow, eye, light, ambient, background, color)

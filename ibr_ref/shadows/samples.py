@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.scene import checks
 from ibr_ref.shadows.containment import contains, solid, touched
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.vertex import place
-
-Array = NDArray[np.float64]
 
 _STEP = 2.0 / 3.0
 """g: centres of cells three to an edge. Samples on the border would be 2 to 4 times farther from the area light."""
@@ -24,13 +22,13 @@ _NEAR = 1e-6
 class Sample(NamedTuple):
     """A sample of the light."""
 
-    position: Array
+    position: Floats
     """(3,) in world space."""
-    displacement: Array
+    displacement: Floats
     """(2,) position - centre, along the offset axes."""
 
 
-def _positions(scene: Scene, params: Params) -> list[Array]:
+def _positions(scene: Scene, params: Params) -> list[Floats]:
     if isinstance(params.light_samples, np.ndarray):
         return list(params.light_samples)
     centre, (a, b) = scene.light.arrays
@@ -63,7 +61,7 @@ def samples_of(scene: Scene, params: Params) -> list[Sample]:
     return samples
 
 
-def check_outside(field: str, scene: Scene, offset: Array, position: Array) -> None:
+def check_outside(field: str, scene: Scene, offset: Floats, position: Floats) -> None:
     """Raise ValueError for a light inside the caster at an offset, or on its surface.
 
     Its triangles are looked at only where the light is near its box: a warp must not cost more for a larger caster.
@@ -77,20 +75,20 @@ def check_outside(field: str, scene: Scene, offset: Array, position: Array) -> N
         )
 
 
-def _is_near(scene: Scene, offset: Array, position: Array) -> bool:
+def _is_near(scene: Scene, offset: Floats, position: Floats) -> bool:
     """Whether a position is in the caster's box at an offset, or beside it by no more than rounding."""
     low, high = place(scene.caster.bounds, scene.axes, offset)
     room = _NEAR * float(np.abs([low, high]).max())
     return bool(((low - room <= position) & (position <= high + room)).all())
 
 
-def widened_range(scene: Scene, samples: list[Sample]) -> tuple[Array, Array]:
+def widened_range(scene: Scene, samples: list[Sample]) -> tuple[Floats, Floats]:
     """(2,) lowest and highest offsets, with room on either side for the object as any of the samples sees it."""
     ends = np.asarray(scene.offset_range)
     widening = np.max([np.abs(sample.displacement) for sample in samples], axis=0)
     return ends[:, 0] - widening, ends[:, 1] + widening
 
 
-def seen_offset(scene: Scene, sample: Sample) -> Array:
+def seen_offset(scene: Scene, sample: Sample) -> Floats:
     """(2,) the object's offset as the sample sees it: moved the opposite way (section 2.3.1)."""
     return np.asarray(scene.offset) - sample.displacement

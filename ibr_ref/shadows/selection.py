@@ -10,14 +10,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.metrics import iou
 from ibr_ref.shadows import maps
 from ibr_ref.shadows.spans import spans
 from ibr_ref.shadows.warp import Nine, locate, warp_stage
-
-Array = NDArray[np.float64]
 
 LARGEST = 512
 """Texels a side of the maps that are compared: of larger ones smaller copies."""
@@ -44,7 +42,7 @@ class Tried(NamedTuple):
     """A placement at all places."""
 
     name: str
-    found: Array
+    found: Floats
     """(N,) IoU."""
 
     @property
@@ -56,7 +54,7 @@ class Tried(NamedTuple):
 class Pace(NamedTuple):
     """How maps are mixed between the nine places."""
 
-    depths: Array | None
+    depths: Floats | None
     """(3, 3) of the caster; None: the even pace."""
     nearest: bool
     """By three warps instead of six."""
@@ -65,14 +63,14 @@ class Pace(NamedTuple):
 class HeldOut:
     """The caster at places (N, 2), rendered, beside the nine maps."""
 
-    def __init__(self, view: maps.View, positions: Array, size: int, k: int, pace: Pace, offsets: Array) -> None:
+    def __init__(self, view: maps.View, positions: Floats, size: int, k: int, pace: Pace, offsets: Floats) -> None:
         size = min(size, LARGEST)
         self.positions, self.offsets, self.pace, self.levels = positions, offsets, pace, maps.levels(k)
         self.texels = np.stack([np.stack([maps.mask(view, o, size, k) for o in line]) for line in positions])
         self.spans = spans(self.texels, self.levels, 0.0)
         self.truths = [self.levels[maps.mask(view, offset, size, k)] for offset in offsets]
 
-    def tried(self, name: str, controls: Array) -> Tried:
+    def tried(self, name: str, controls: Floats) -> Tried:
         """Of control points (3, 3, R, C, 2)."""
         nine = Nine(self.texels, self.levels, self.spans, controls, 0.0)
         found = []

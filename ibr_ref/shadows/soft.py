@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.io import Frame
 from ibr_ref.scene import checks
 from ibr_ref.scene.vectors import cross, dot, unit
@@ -33,8 +33,6 @@ from ibr_ref.shadows.samples import samples_of
 from ibr_ref.shadows.surface import Surface
 from ibr_ref.shadows.traced import traced
 from ibr_ref.shadows.vertex import place
-
-Array = NDArray[np.float64]
 
 SOFT_METHODS = ("traced", "convolution", "pcss")
 READ_BY: dict[str, tuple[str, ...]] = {
@@ -105,14 +103,14 @@ def render_soft(scene: Scene, params: SoftParams | None = None, *, stages: bool 
     return Frame(color=color, depth=surface.depth, stages=kept if stages else {})
 
 
-def _traced(scene: Scene, params: SoftParams, surface: Surface, caster: Array) -> dict[str, Any]:
+def _traced(scene: Scene, params: SoftParams, surface: Surface, caster: Floats) -> dict[str, Any]:
     lights = on_parallelogram(*scene.light.arrays, params.rays)
     triangles = np.asarray(scene.caster.triangles)
     shadow = traced(surface.triangle, surface.varyings, caster_from(scene), caster, triangles, lights)
     return {"soft.shadow": shadow}
 
 
-def _convolved(scene: Scene, params: SoftParams, surface: Surface, caster: Array) -> dict[str, Any]:
+def _convolved(scene: Scene, params: SoftParams, surface: Surface, caster: Floats) -> dict[str, Any]:
     first, triangles = caster_from(scene), np.asarray(scene.caster.triangles)
     frame, window, receivers = _parallel(scene, surface, caster)
     view = parallel.view_of_caster(frame, window, caster, triangles)
@@ -124,7 +122,7 @@ def _convolved(scene: Scene, params: SoftParams, surface: Surface, caster: Array
     return {"soft.planes": planes, "soft.maps": images, "soft.shadow": shadow}
 
 
-def _softened(scene: Scene, params: SoftParams, surface: Surface, caster: Array) -> dict[str, Any]:
+def _softened(scene: Scene, params: SoftParams, surface: Surface, caster: Floats) -> dict[str, Any]:
     first, triangles = caster_from(scene), np.asarray(scene.caster.triangles)
     frame, window, _ = _parallel(scene, surface, caster)
     view = parallel.view_of_caster(frame, window, caster, triangles)
@@ -134,7 +132,7 @@ def _softened(scene: Scene, params: SoftParams, surface: Surface, caster: Array)
     return {"soft.map": distances, "soft.blocker": found.blocker, "soft.shadow": found.shadow}
 
 
-def frame_of(scene: Scene, towards: Array) -> parallel.Frame:
+def frame_of(scene: Scene, towards: Floats) -> parallel.Frame:
     """The frame of the light, whose plane is that of the axes; h > 0 on the side of the point `towards` (3,)."""
     centre, half_edges = scene.light.arrays
     right, normal = unit(scene.axes[0]), unit(cross(*scene.axes))
@@ -145,7 +143,7 @@ def frame_of(scene: Scene, towards: Array) -> parallel.Frame:
     return parallel.Frame(view, np.array([[dot(row, edge) for row in rows[:2]] for edge in half_edges]))
 
 
-def _parallel(scene: Scene, surface: Surface, caster: Array) -> tuple[parallel.Frame, parallel.Window, Array]:
+def _parallel(scene: Scene, surface: Surface, caster: Floats) -> tuple[parallel.Frame, parallel.Window, Floats]:
     """The light's frame, a window around the caster, and the distances of all that is seen of the receivers."""
     drawn = caster[np.unique(scene.caster.triangles)]
     frame = frame_of(scene, drawn.mean(axis=0))

@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, routine
-
-Array = NDArray[np.float64]
 
 
 @device
@@ -66,7 +65,7 @@ def _scatter(values, members, out):
             out[members[e, i]] += values[e, i]
 
 
-def scatter(values: Array, members: NDArray[np.int64], count: int) -> Array:
+def scatter(values: Floats, members: NDArray[np.int64], count: int) -> Floats:
     """(count,) sums of the elements' values (E, K) by the unknowns `members` (E, K)."""
     out = np.zeros(count)
     _scatter(values, members, out)
@@ -76,17 +75,17 @@ def scatter(values: Array, members: NDArray[np.int64], count: int) -> Array:
 class Equations(NamedTuple):
     """(sum of the elements' matrices + diag(ridge)) x = right, on the unknowns that are free."""
 
-    matrix: Array
+    matrix: Floats
     """(E, K, K) symmetric, not negative."""
     members: NDArray[np.int64]
     """(E, K) the unknowns that each element knows."""
-    ridge: Array
+    ridge: Floats
     """(N,) > 0."""
-    free: Array
+    free: Floats
     """(N,) 1; 0 for unknowns that stay 0."""
 
 
-def solve(equations: Equations, right: Array, steps: int, tolerance: float) -> Array:
+def solve(equations: Equations, right: Floats, steps: int, tolerance: float) -> Floats:
     """x (N,); stops after `steps`, or where the residual, in the diagonal's norm, fell to its `tolerance`-th part."""
     matrix, members, ridge, free = equations
     x = np.zeros(len(right))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.clip import clip_triangles
 from ibr_ref.pipeline.lighting import unit
@@ -15,32 +16,30 @@ from ibr_ref.pipeline.triangles import set_up
 from ibr_ref.pipeline.visibility import interpolate, visible
 from ibr_ref.shadows.vertex import to_clip
 
-Array = NDArray[np.float64]
-
 
 class Object(NamedTuple):
     """A mesh in world space."""
 
-    vertices: Array
+    vertices: Floats
     """(V, 3)."""
     triangles: NDArray[np.int32]
     """(T, 3)."""
-    color: Array
+    color: Floats
     """(3,), or (V, 3)."""
 
 
 class Surface(NamedTuple):
     """The visible fragments of a picture."""
 
-    depth: Array
+    depth: Floats
     """(H, W) window depth; 1 where nothing is."""
     triangle: NDArray[np.int32]
     """(H, W) index among the triangles of all objects, in the order in which they are drawn; -1 none."""
-    varyings: Array
+    varyings: Floats
     """(H, W, 3) world position, or (H, W, 6): position and colour; NaN where nothing is."""
-    normals: Array
+    normals: Floats
     """(T, 3) unit normals of all triangles, of either side; 0 where a triangle has no area."""
-    colors: Array
+    colors: Floats
     """(T, 3) the colours of triangles whose mesh has but one; NaN where vertices have colours."""
 
 
@@ -66,7 +65,7 @@ def _name(winner, source, out):
         _name_row(winner, source, row, out)
 
 
-def _varyings(objects: Sequence[Object], vertices: Array) -> Array:
+def _varyings(objects: Sequence[Object], vertices: Floats) -> Floats:
     """(V, 3) positions, or (V, 6) with colours, where any mesh has a colour a vertex."""
     if all(o.color.ndim == 1 for o in objects):
         return vertices
@@ -74,12 +73,12 @@ def _varyings(objects: Sequence[Object], vertices: Array) -> Array:
     return np.concatenate([vertices, np.concatenate(colors)], axis=1)
 
 
-def _plain_colors(objects: Sequence[Object]) -> Array:
+def _plain_colors(objects: Sequence[Object]) -> Floats:
     plain = [o.color if o.color.ndim == 1 else np.full(3, np.nan) for o in objects]
     return np.repeat(np.array(plain), [len(o.triangles) for o in objects], axis=0)
 
 
-def see(objects: Sequence[Object], view_from_world: Array, clip_from_view: Array, width: int, height: int) -> Surface:
+def see(objects: Sequence[Object], view_from_world: Floats, clip_from_view: Floats, width: int, height: int) -> Surface:
     """Draw objects in order, with the depth test LESS."""
     starts = np.cumsum([0] + [len(o.vertices) for o in objects])
     vertices = np.concatenate([o.vertices for o in objects])

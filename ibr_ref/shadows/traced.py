@@ -9,11 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.shadows.hierarchy import DEEPEST, Hierarchy, build, meets
-
-Array = NDArray[np.float64]
 
 
 @device
@@ -59,12 +58,12 @@ def _trace(triangle, varyings, caster, hierarchy, lights, light_low, light_high,
 
 def traced(
     triangle: NDArray[np.int32],
-    varyings: Array,
+    varyings: Floats,
     caster: int,
-    vertices: Array,
+    vertices: Floats,
     triangles: NDArray[np.int32],
-    lights: Array,
-) -> Array:
+    lights: Floats,
+) -> Floats:
     """(H, W) the share of the lights (N, 3) that the caster hides from each visible point.
 
     triangle (H, W), varyings (H, W, 3 or more): those of the `Surface`, where the caster's triangles begin with index

@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.pipeline.memory import arrays
-
-Floats = NDArray[np.float64]
 
 
 class Reference(NamedTuple):

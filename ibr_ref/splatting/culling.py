@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.pipeline.culling import DRAWN, FAR, NEAR, OUTSIDE, SMALL, Culled
 from ibr_ref.pipeline.culling import culled as counted
 from ibr_ref.pipeline.transform import transformed
@@ -13,8 +14,6 @@ from ibr_ref.splatting.inputs import Params, Scene
 from ibr_ref.splatting.references import prepare
 from ibr_ref.splatting.render import render
 from ibr_ref.splatting.unproject import world_points
-
-Array = NDArray[np.float64]
 
 
 def culled(scene: Scene, params: Params | None = None) -> Culled:
@@ -33,14 +32,14 @@ def culled(scene: Scene, params: Params | None = None) -> Culled:
     return counted("point", np.where(dropped, np.where(depths <= near, NEAR, FAR), fates))
 
 
-def _view_depths(scene: Scene) -> Array:
+def _view_depths(scene: Scene) -> Floats:
     """(V,) along the view axis."""
     references = [prepare(image).reference for image in scene.images]
     points = np.concatenate([world_points(reference)[reference.pixels] for reference in references])
     return 0.0 - transformed(scene.camera.view_from_world, points)[:, 2]
 
 
-def _covers(stages: dict[str, Array], params: Params, size: tuple[int, int]) -> NDArray[np.bool_]:
+def _covers(stages: dict[str, Floats], params: Params, size: tuple[int, int]) -> NDArray[np.bool_]:
     """(V,) whether a splat covers the pixel's centre that is nearest to it: if any, it does."""
     window = np.rint(stages["vertex.window"] * SUBPIXELS) / SUBPIXELS
     half = stages["vertex.width"] / 2.0

@@ -13,12 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.pipeline.transform import transformed
 from ibr_ref.splatting.buffers import Reference, View
 from ibr_ref.splatting.normals import JUMP, valid_mask
 from ibr_ref.splatting.unproject import world_points
-
-Floats = NDArray[np.float64]
 
 MOST_SAMPLES = 4000
 """Points that the regression sees, evenly taken from all that are in view."""

@@ -12,13 +12,11 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.scene import Camera, Mesh
 from ibr_ref.shadows import AreaLight, Params, Scene
 from ibr_ref.testing.numbers import often, real, seeds
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -27,7 +25,7 @@ class Drawn:
 
     scene: Scene
     params: Params
-    controls: Array
+    controls: Floats
 
 
 SIZES = st.tuples(st.integers(10, 22), st.integers(8, 16))
@@ -44,7 +42,7 @@ AXES = (
 """Unit vectors, scaled and exchanged ones, and oblique ones off the ground's plane."""
 
 
-def colors(draw: DrawFn, vertices: int) -> Array:
+def colors(draw: DrawFn, vertices: int) -> Floats:
     """One for the mesh, or one a vertex."""
     random = np.random.RandomState(draw(seeds()))
     return random.random_sample(3 if draw(st.booleans()) else (vertices, 3))
@@ -81,7 +79,7 @@ def receivers(draw: DrawFn) -> list[Mesh]:
 
 
 @st.composite
-def lights(draw: DrawFn, axes: Array, range_: Array) -> AreaLight:
+def lights(draw: DrawFn, axes: Floats, range_: Floats) -> AreaLight:
     """Above the caster; above an end or the middle of its range, or beside it."""
     x, y = (draw(real(-1.5, 1.5, float(range_[k, 0]), float(range_[k].mean()), 0.0)) for k in range(2))
     position = x * axes[0] + y * axes[1] + np.array([0.0, 0.0, draw(real(2.5, 5.0, 3.0, 4.0))])
@@ -117,7 +115,7 @@ def cameras(draw: DrawFn, sizes: SearchStrategy[tuple[int, int]] = SIZES) -> Cam
 
 
 @st.composite
-def offsets(draw: DrawFn, range_: Array, light: tuple[float, float]) -> tuple[float, float]:
+def offsets(draw: DrawFn, range_: Floats, light: tuple[float, float]) -> tuple[float, float]:
     """Anywhere in the range; on its ends, or just under the light, where the maps' middle line is."""
     return tuple(  # type: ignore[return-value]
         draw(real(low, high, low, high, min(max(own, low), high)))
@@ -126,7 +124,7 @@ def offsets(draw: DrawFn, range_: Array, light: tuple[float, float]) -> tuple[fl
 
 
 @st.composite
-def parameters(draw: DrawFn, light: AreaLight, axes: Array) -> Params:
+def parameters(draw: DrawFn, light: AreaLight, axes: Floats) -> Params:
     """All parameters; the light's samples as a number or as a list of places."""
     samples: Any = draw(st.sampled_from([1, 1, 5, 9, "list", "list"]))
     if samples == "list":
@@ -150,7 +148,7 @@ def parameters(draw: DrawFn, light: AreaLight, axes: Array) -> Params:
     )
 
 
-def unfolded_controls(seed: int, rows: int, columns: int) -> Array:
+def unfolded_controls(seed: int, rows: int, columns: int) -> Floats:
     """Nine grids whose points are moved by less than a quarter of a cell, the border along itself."""
     random = np.random.RandomState(seed)
     grid = np.stack(np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows)), axis=-1)

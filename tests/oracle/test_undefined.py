@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats, Policy
+from ibr_ref.array_types import Floats
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.faults import displacement
 from ibr_ref.oracle.ports import shadows, splatting

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ibr_ref.array_types import Floats
 
 
-def colors_at(color: Array, k: Array, k_other: Array, width: int, height: int) -> tuple[Array, NDArray[np.bool_]]:
+def colors_at(color: Floats, k: Floats, k_other: Floats, width: int, height: int) -> tuple[Floats, NDArray[np.bool_]]:
     """Colours (height, width, 3), fetched bilinearly from a picture, and where its field of view has any.
 
     k, k_other: (3, 3) intrinsics of the picture and of the pixels, centres at half-integers.
@@ -26,7 +26,7 @@ def colors_at(color: Array, k: Array, k_other: Array, width: int, height: int) -
     return above * (1.0 - down) + below * down, known
 
 
-def _neighbours(place: Array, count: int) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
+def _neighbours(place: Floats, count: int) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats]:
     """The two texels about each place, clamped, and the weight of the second (H, W, 1)."""
     first = np.floor(place - 0.5)
     weight = (place - 0.5 - first)[..., None]

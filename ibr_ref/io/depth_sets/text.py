@@ -8,14 +8,12 @@ from io import BytesIO
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.io.files import contents, naming
 from ibr_ref.io.words import real, shown
 from ibr_ref.scene import checks
 from ibr_ref.scene.rotations import normalized, rotation_of
-
-Array = NDArray[np.float64]
 
 MOST_BYTES = 2**25
 """Of a text: two hundred thousand poses."""
@@ -62,7 +60,7 @@ def all_numbers(path: Path) -> list[float]:
         return numbers(words, "the file")
 
 
-def matrix_file(path: Path) -> Array:
+def matrix_file(path: Path) -> Floats:
     """(4, 4), of a file of 16 numbers, of 12 (the last row is 0 0 0 1), or of 9 (3 x 3, intrinsics)."""
     values = all_numbers(path)
     if len(values) not in (9, 12, 16):
@@ -74,7 +72,7 @@ def matrix_file(path: Path) -> Array:
     return result
 
 
-def pose_of(quaternion_xyzw: list[float], translation: list[float]) -> Array:
+def pose_of(quaternion_xyzw: list[float], translation: list[float]) -> Floats:
     """(4, 4) of a quaternion, the scalar last, and a shift. Raises ValueError for one that is not of length 1."""
     x, y, z, w = quaternion_xyzw
     norm = float(np.sqrt(x * x + y * y + z * z + w * w))
@@ -86,6 +84,6 @@ def pose_of(quaternion_xyzw: list[float], translation: list[float]) -> Array:
     return pose
 
 
-def pinhole(f_x: float, f_y: float, c_x: float, c_y: float, skew: float = 0.0) -> Array:
+def pinhole(f_x: float, f_y: float, c_x: float, c_y: float, skew: float = 0.0) -> Floats:
     """(3, 3) intrinsics."""
     return np.array([[f_x, skew, c_x], [0.0, f_y, c_y], [0.0, 0.0, 1.0]])

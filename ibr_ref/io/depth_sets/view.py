@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.io.depth_sets.conventions import Conventions, Options
 from ibr_ref.io.depth_sets.maps import read_depth_map
 from ibr_ref.io.depth_sets.resample import colors_at
@@ -16,8 +17,6 @@ from ibr_ref.io.textures import read_color
 from ibr_ref.scene import Camera, DepthImage, checks
 from ibr_ref.scene.rotations import cofactors, rotation_matrix
 from ibr_ref.scene.vectors import dot
-
-Array = NDArray[np.float64]
 
 FARTHEST = 1e9
 """World units. A depth this far is a program's word for nothing (1e10, the largest float); a camera, a mistake."""
@@ -35,13 +34,13 @@ class View(NamedTuple):
     """The file, and the place in it, that intrinsics and pose are from."""
     color: Path
     depth: Path | None
-    intrinsics: Array
+    intrinsics: Floats
     """(3, 3) of the colour picture."""
-    pose: Array
+    pose: Floats
     """(4, 4)."""
     size: tuple[int, int] | None = None
     """Width and height of the colour picture, if the set says so."""
-    depth_intrinsics: Array | None = None
+    depth_intrinsics: Floats | None = None
     """(3, 3) of the depth map, if they are not the picture's."""
     disparity: tuple[float, float] | None = None
     """(b, d0): a stored d means the depth b/(d + d0)."""
@@ -86,7 +85,7 @@ def depth_image(view: View, conventions: Conventions, options: Options) -> tuple
         return DepthImage(color=color, depth=depth, camera=camera, mask=valid), _words(stored)
 
 
-def _camera(k: Array, view: View, conventions: Conventions, size: tuple[int, int], near: float, far: float) -> Camera:
+def _camera(k: Floats, view: View, conventions: Conventions, size: tuple[int, int], near: float, far: float) -> Camera:
     rotation, translation = _view_from_world(view.pose, conventions)
     return Camera.calibrated(
         intrinsics=k, rotation=rotation, translation=translation, near=near, far=far, width=size[0], height=size[1]
@@ -94,8 +93,8 @@ def _camera(k: Array, view: View, conventions: Conventions, size: tuple[int, int
 
 
 def _both_intrinsics(
-    view: View, conventions: Conventions, color: Array, depth_size: tuple[int, int]
-) -> tuple[Array, Array]:
+    view: View, conventions: Conventions, color: Floats, depth_size: tuple[int, int]
+) -> tuple[Floats, Floats]:
     """Those of the picture, and those of the depth map: its own, or the picture's in the map's pixels."""
     height, width = color.shape[:2]
     if view.size is not None and view.size != (width, height):
@@ -111,7 +110,7 @@ def _both_intrinsics(
     return k, np.array([[columns / width], [rows / height], [1.0]]) * k
 
 
-def _centered(intrinsics: Array, conventions: Conventions) -> Array:
+def _centered(intrinsics: Floats, conventions: Conventions) -> Floats:
     """Intrinsics with the pixels' centres at half-integers."""
     k = np.array(checks.matrix("intrinsics", intrinsics, 3, 3))
     if not (np.abs(k).max() <= FARTHEST and min(abs(k[0, 0]), abs(k[1, 1])) >= 1.0 / FARTHEST):
@@ -122,7 +121,7 @@ def _centered(intrinsics: Array, conventions: Conventions) -> Array:
     return k
 
 
-def _scaled(stored: Array, whole: bool, view: View, conventions: Conventions, options: Options) -> Array:
+def _scaled(stored: Floats, whole: bool, view: View, conventions: Conventions, options: Options) -> Floats:
     """Depths in world units, or what else is stored there."""
     if view.disparity is not None:
         baseline, offset = view.disparity
@@ -137,7 +136,7 @@ def _scaled(stored: Array, whole: bool, view: View, conventions: Conventions, op
     return stored * ((1.0 if scale is None else scale) * view.unit)
 
 
-def _along_the_axis(depth: Array, k: Array, conventions: Conventions) -> tuple[Array, NDArray[np.bool_]]:
+def _along_the_axis(depth: Floats, k: Floats, conventions: Conventions) -> tuple[Floats, NDArray[np.bool_]]:
     """Depths along the view axis, and where they are some: > 0, finite and below FARTHEST."""
     valid = (depth > 0.0) & (depth < FARTHEST)
     if conventions.along == "ray":
@@ -148,13 +147,13 @@ def _along_the_axis(depth: Array, k: Array, conventions: Conventions) -> tuple[A
     return np.where(valid, depth, 0.0), valid
 
 
-def _planes(depth: Array, valid: NDArray[np.bool_]) -> tuple[float, float]:
+def _planes(depth: Floats, valid: NDArray[np.bool_]) -> tuple[float, float]:
     if not valid.any():
         return _UNKNOWN
     return float(depth[valid].min()) / _MARGIN, float(depth[valid].max()) * _MARGIN
 
 
-def _view_from_world(pose: Array, conventions: Conventions) -> tuple[Array, Array]:
+def _view_from_world(pose: Floats, conventions: Conventions) -> tuple[Floats, Floats]:
     """Rotation and translation into a space that looks down -z, +y up."""
     pose = checks.matrix("pose", pose, 4, 4)
     if not np.abs(pose[3] - (0.0, 0.0, 0.0, 1.0)).max() <= 1e-6:
@@ -172,6 +171,6 @@ def _view_from_world(pose: Array, conventions: Conventions) -> tuple[Array, Arra
     return rotation, translation
 
 
-def _words(stored: Array) -> str:
+def _words(stored: Floats) -> str:
     finite = stored[np.isfinite(stored)]
     return f"{finite.min():g} to {finite.max():g}" if finite.size else "NaN and infinities"

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.io.gltf.document import Node, refused
 from ibr_ref.pipeline.transform import transformed
-
-Floats = NDArray[np.float64]
 
 _UNIT = 1e-3
 """How far the square of a quaternion's length may be from 1."""

@@ -7,17 +7,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Ints
 from ibr_ref.io.gltf.accessors import Accessors
 from ibr_ref.io.gltf.buffers import Buffers, split
 from ibr_ref.io.gltf.document import Document, Node, Primitive, decode_document, member, refused
 from ibr_ref.io.gltf.placement import is_mirrored, moved, placement
 from ibr_ref.io.polygons import check_corners, fan, strip
 from ibr_ref.scene import Mesh
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 _TRIANGLES, _STRIP = 4, 5
 _MODES = ("points", "lines", "a line loop", "a line strip", "triangles", "a triangle strip", "a triangle fan")
@@ -39,7 +36,7 @@ class _Part(NamedTuple):
 
     positions: Floats
     colors: Floats | None
-    triangles: Integers
+    triangles: Ints
 
 
 def decode(data: bytes, path: Path) -> Mesh:
@@ -110,7 +107,7 @@ def _shown(document: Document, accessors: Accessors, index: int, matrix: Floats)
         return
     mesh = member(document.meshes, node.mesh, "meshes")
     _check_rest(node, index, mesh.weights)
-    shared: dict[tuple[int | None, int | None], list[Integers]] = {}
+    shared: dict[tuple[int | None, int | None], list[Ints]] = {}
     for k, primitive in enumerate(mesh.primitives):
         name = f"meshes.{node.mesh}.primitives.{k}"
         count = _check_primitive(accessors, primitive, name)
@@ -162,7 +159,7 @@ def _check_primitive(accessors: Accessors, primitive: Primitive, name: str) -> i
     return position.count
 
 
-def _triangles(accessors: Accessors, primitive: Primitive, name: str, count: int) -> Integers:
+def _triangles(accessors: Accessors, primitive: Primitive, name: str, count: int) -> Ints:
     """(T, 3) corners of one primitive."""
     if primitive.indices is None:
         if count > _MOST:

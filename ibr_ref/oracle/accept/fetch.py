@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
+from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.device import UNIT, Device
-
-Floats = NDArray[np.float64]
 
 FARTHEST = 1e9
 """Texels beyond it are not told apart: a float32 does not, and whole numbers end somewhere."""

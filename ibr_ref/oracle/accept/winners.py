@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
+from ibr_ref.array_types import Bools, Floats
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.array_types import Ints
 from ibr_ref.oracle.arithmetic import numpy_names
 from ibr_ref.oracle.arithmetic.choices import Choices
-from ibr_ref.oracle.arithmetic.number import Ints, Number
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import TINY, UNIT, Device
 
 

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.array_types import Ints
 from ibr_ref.oracle.arithmetic.decisions import Decisions
-from ibr_ref.oracle.arithmetic.number import Ints, Number, Truth
+from ibr_ref.oracle.arithmetic.number import Number, Truth
 
 
 class Choices(Decisions):

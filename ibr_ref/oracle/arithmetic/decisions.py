@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.number import Bools, Ints, Number, Truth, slope
+from ibr_ref.array_types import Bools, Ints
+from ibr_ref.oracle.arithmetic.number import Number, Truth, slope
 
 MOST_DECISIONS = 48
 """Open decisions on one path of the program; beyond, the lane is lost."""

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Floats = NDArray[np.float64]
+from ibr_ref.array_types import Floats
 
 
 @dataclass(frozen=True, kw_only=True)

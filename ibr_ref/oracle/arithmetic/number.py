@@ -17,14 +17,11 @@ from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ibr_ref.array_types import Bools
 
 if TYPE_CHECKING:
     from ibr_ref.oracle.arithmetic.bounds import Bounds
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 
 class _Speaks:

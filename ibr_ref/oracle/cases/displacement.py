@@ -12,14 +12,12 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ibr_ref import models
+from ibr_ref.array_types import Floats
 from ibr_ref.displacement import Params, Scene
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.scene import BasePolygon, Camera, Light
-
-Floats = NDArray[np.float64]
 
 WIDTH, HEIGHT = 112, 84
 

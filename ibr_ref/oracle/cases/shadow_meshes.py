@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ibr_ref.array_types import Floats
 from ibr_ref.scene import Mesh
 from ibr_ref.scene.trigonometry import sine_cosine
-
-Floats = NDArray[np.float64]
 
 _QUADS = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
 

@@ -12,7 +12,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ibr_ref import models
 from ibr_ref.models.shadow_stage import shadow_stage
@@ -20,8 +20,6 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.cases.shadow_meshes import block, grid, moved, painted, plate, rack, stool, wall
 from ibr_ref.scene import AreaLight, Camera
 from ibr_ref.shadows import Params, Scene, prepare
-
-Floats = NDArray[np.float64]
 
 WIDTH, HEIGHT, SIZE = 96, 72, 48
 

@@ -12,15 +12,14 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ibr_ref import models
+from ibr_ref.array_types import Floats
 from ibr_ref.models.surface_depths import ball_depths, plane_depths
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.scene import Camera, DepthImage, Light
 from ibr_ref.splatting import Params, Scene, render
-
-Floats = NDArray[np.float64]
 
 
 def case(name: str, kind: str, about: str, profile: str, scene: Scene, params: Params) -> Case:

@@ -11,12 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bytes
 from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.files.problem import Problem
 from ibr_ref.oracle.schema.stages import flat
-
-Bytes = NDArray[np.uint8]
 
 BYTES_AS_FLOATS = 16.0
 """A colour above it was not meant to be in [0, 1]; lit too brightly, an unclamped one stays below."""

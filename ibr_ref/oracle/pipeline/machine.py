@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.array_types import Ints
 from ibr_ref.oracle.accept.fetch import Texture
 from ibr_ref.oracle.arithmetic.bounds import Bounds
-from ibr_ref.oracle.arithmetic.number import Ints, Number
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.pipeline.texture import below_highest, fetch, texel_position
 

@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept import coverage
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.arithmetic.bounds import Bounds
-from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import UNIT, Device
 
 EDGE_ROUNDINGS = 9.0

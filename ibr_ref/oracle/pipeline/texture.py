@@ -6,9 +6,10 @@ from functools import reduce
 
 import numpy as np
 
+from ibr_ref.array_types import Ints
 from ibr_ref.oracle.accept.fetch import Texture, filter_error, lerp, spread_around
 from ibr_ref.oracle.arithmetic.bounds import Bounds
-from ibr_ref.oracle.arithmetic.number import Ints, Number
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import UNIT
 
 

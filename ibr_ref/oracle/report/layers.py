@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from ibr_ref.array_types import Bytes
 from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.examination import Examination
 from ibr_ref.oracle.judgement import Judgement
-
-Bytes = NDArray[np.uint8]
 
 AMBER, RED = (255, 176, 0), (255, 32, 64)
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.displacement import Params, Scene, render
 from ibr_ref.io import Frame
 from ibr_ref.reproduce.displacement.systems import System
 from ibr_ref.scene import BasePolygon
 
-Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 RAISED = 0.05

@@ -7,16 +7,14 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ibr_ref import io, models, shadows
+from ibr_ref.array_types import Floats
 from ibr_ref.demo.shadows import difference, warped_and_rendered
 from ibr_ref.reproduce.findings import Figure, Found, Within
 from ibr_ref.reproduce.shadows.objects import objects, which
 from ibr_ref.scene import Camera
 from ibr_ref.shadows import Maps, Params, Scene, SoftParams
-
-Array = NDArray[np.float64]
 
 OFFSET = (0.23, -0.31)
 """Between the nine places."""
@@ -56,12 +54,12 @@ def _names() -> tuple[str, str]:
     return first, last
 
 
-def _grey(shadow: Array) -> Array:
+def _grey(shadow: Floats) -> Floats:
     """(H, W, 3) dark on white."""
     return np.asarray((1.0 - 0.85 * np.clip(shadow, 0.0, 1.0))[..., None].repeat(3, axis=2))
 
 
-def _row(pictures: list[Array]) -> Array:
+def _row(pictures: list[Floats]) -> Floats:
     """Pictures of one height beside each other, light lines between."""
     gap = np.full((len(pictures[0]), 8, 3), 0.9)
     return np.concatenate([part for picture in pictures for part in (gap, picture)][1:], axis=1)
@@ -165,7 +163,7 @@ def soft_side_by_side(folder: Path, within: Within) -> Found:
     name = _names()[1]
     stage, nine, maps = _warping(name)
     scene = _close_up(stage)
-    soft: dict[str, Array] = {}
+    soft: dict[str, Floats] = {}
     for i, method in enumerate(("traced", "convolution", "pcss")):
         within(f"{method}, the {name}", i, 5)
         soft[method] = shadows.render_soft(scene, SoftParams(method=method)).stages["soft.shadow"]
@@ -192,7 +190,7 @@ def soft_side_by_side(folder: Path, within: Within) -> Found:
     )
 
 
-def _amplified(ours: Array, theirs: Array) -> Array:
+def _amplified(ours: Floats, theirs: Floats) -> Floats:
     """Four times the difference."""
     excess = 4.0 * (ours - theirs)
     return difference(np.clip(excess, 0.0, 1.0), np.clip(-excess, 0.0, 1.0))

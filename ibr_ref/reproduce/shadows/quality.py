@@ -8,16 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ibr_ref import models, shadows
+from ibr_ref.array_types import Floats
 from ibr_ref.metrics import iou
 from ibr_ref.reproduce.findings import Cell, Claim, Found, Table, Within
 from ibr_ref.reproduce.shadows.objects import objects, which
 from ibr_ref.scene import Mesh
 from ibr_ref.shadows import MapGrid, Maps, Params, Scene, SoftParams
-
-Array = NDArray[np.float64]
 
 SIZE = 256
 OFFSETS = 16
@@ -34,7 +32,7 @@ def _scenes(mesh: Mesh, count: int, **changes: Any) -> list[Scene]:
     return [replace(scene, offset=o) for o in np.random.RandomState(64).uniform(low, high, (count, 2))]
 
 
-def difference(ours: Array, theirs: Array) -> float:
+def difference(ours: Floats, theirs: Floats) -> float:
     """Mean absolute difference of two shadows where either is more than half a step of 8 bits.
 
     Wavelets and FFTs leave next to nothing in a great many pixels, which would make every mean small.
@@ -68,7 +66,7 @@ def _ways(scene: Scene) -> dict[str, tuple[Params, Maps | MapGrid]]:
     }
 
 
-def grey_share(image: Array) -> float:
+def grey_share(image: Floats) -> float:
     """How much of a shadow (S, S) is neither dark nor light: of a silhouette's none is."""
     return float(((image > 0.1) & (image < 0.9)).sum()) / max(1, int((image > 0.1).sum()))
 
@@ -157,7 +155,7 @@ def _light_moved() -> Claim:
 # --- Soft shadows: the area light ------------------------------------------------------------------------------------
 
 
-def _sampled(scene: Scene) -> dict[str, tuple[Callable[[Scene], Array], int | None]]:
+def _sampled(scene: Scene) -> dict[str, tuple[Callable[[Scene], Floats], int | None]]:
     """Shadows in the picture by samples of the light, and the bytes that are held for them."""
     nine = Params(map_size=SIZE, light_samples=9)
     direct = replace(nine, method="direct")
@@ -176,7 +174,7 @@ def _sampled(scene: Scene) -> dict[str, tuple[Callable[[Scene], Array], int | No
     }
 
 
-def _softened() -> dict[str, Callable[[Scene], Array]]:
+def _softened() -> dict[str, Callable[[Scene], Floats]]:
     return {
         "convolution, one plane": _soft(SoftParams(method="convolution", map_size=SIZE, receiver_planes=1)),
         "convolution, four planes": _soft(SoftParams(method="convolution", map_size=SIZE)),
@@ -184,11 +182,11 @@ def _softened() -> dict[str, Callable[[Scene], Array]]:
     }
 
 
-def _by(params: Params, maps: Maps | MapGrid | None) -> Callable[[Scene], Array]:
+def _by(params: Params, maps: Maps | MapGrid | None) -> Callable[[Scene], Floats]:
     return lambda scene: np.asarray(shadows.render(scene, params, maps=maps).stages["accumulate.shadow"])
 
 
-def _soft(params: SoftParams) -> Callable[[Scene], Array]:
+def _soft(params: SoftParams) -> Callable[[Scene], Floats]:
     return lambda scene: np.asarray(shadows.render_soft(scene, params).stages["soft.shadow"])
 
 
@@ -226,7 +224,7 @@ def soft_quality(folder: Path, within: Within) -> Found:
     return Found(tables=(table,), claims=_claims_of_soft(found, list(meshes)))
 
 
-def _differences(scenes: list[Scene], ways: dict[str, Callable[[Scene], Array]]) -> dict[str, float]:
+def _differences(scenes: list[Scene], ways: dict[str, Callable[[Scene], Floats]]) -> dict[str, float]:
     truth = [_soft(SoftParams(method="traced"))(scene) for scene in scenes]
     return {
         way: _mean([difference(shadow(scene), t) for scene, t in zip(scenes, truth, strict=True)])

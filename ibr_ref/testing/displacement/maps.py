@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.testing.numbers import real, seeds
-
-Array = NDArray[np.float64]
 
 SIZES = st.one_of(
     st.sampled_from([(1, 1), (1, 2), (1, 7), (2, 1), (9, 1), (2, 2), (16, 8), (33, 17), (40, 40)]),
@@ -19,7 +17,7 @@ SIZES = st.one_of(
 
 
 @st.composite
-def height_maps(draw: DrawFn, sizes: SearchStrategy[tuple[int, int]] = SIZES) -> Array:
+def height_maps(draw: DrawFn, sizes: SearchStrategy[tuple[int, int]] = SIZES) -> Floats:
     """Heights from exactly 0 to exactly 1: noise, terraces, plateaus, spikes and pits of one texel, ramps."""
     size = draw(sizes)
     random = np.random.RandomState(draw(seeds()))
@@ -42,7 +40,7 @@ def height_maps(draw: DrawFn, sizes: SearchStrategy[tuple[int, int]] = SIZES) ->
 
 
 @st.composite
-def aligned_height_maps(draw: DrawFn) -> Array:
+def aligned_height_maps(draw: DrawFn) -> Floats:
     """Quarters on maps of powers of two: their bilinear mixes are exact at the places that `ALIGNED` cameras see."""
     size = draw(st.sampled_from([(1, 1), (2, 2), (4, 4), (8, 8), (1, 4), (4, 2)]))
     if draw(st.booleans()):
@@ -51,14 +49,14 @@ def aligned_height_maps(draw: DrawFn) -> Array:
 
 
 @st.composite
-def colors(draw: DrawFn, most: int = 5) -> Array:
+def colors(draw: DrawFn, most: int = 5) -> Floats:
     """A map of random colours."""
     size = draw(st.tuples(st.integers(1, most), st.integers(1, most)))
     return np.random.RandomState(draw(seeds())).random_sample((*size, 3))
 
 
 @st.composite
-def normal_maps(draw: DrawFn) -> Array:
+def normal_maps(draw: DrawFn) -> Floats:
     """Normals as colours: noise, all zero (0.5 stands for 0), or opposite ones that cancel between the texels."""
     kind = draw(st.sampled_from(["noise", "noise", "zero", "opposite"]))
     if kind == "noise":

@@ -7,26 +7,24 @@ from dataclasses import dataclass
 import numpy as np
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.scene import BasePolygon
 from ibr_ref.testing.displacement.maps import SIZES, aligned_height_maps, colors, height_maps, normal_maps
 from ibr_ref.testing.numbers import often, real
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Shape:
     """Where a polygon lies: corner, edges and the height of its volume, in world units."""
 
-    corner: Array
-    edge_u: Array
-    edge_v: Array
+    corner: Floats
+    edge_u: Floats
+    edge_v: Floats
     height_scale: float
 
     @property
-    def up(self) -> Array:
+    def up(self) -> Floats:
         """The edge of the volume along h."""
         normal = np.cross(self.edge_u, self.edge_v)
         return self.height_scale * normal / float(np.linalg.norm(normal))
@@ -36,18 +34,18 @@ class Shape:
         """Half of what a picture must show of the volume, in world units."""
         return 0.5 * float(np.linalg.norm(self.edge_u) + np.linalg.norm(self.edge_v))
 
-    def vector(self, patch: Array) -> Array:
+    def vector(self, patch: Floats) -> Floats:
         """A direction of patch space in world space."""
-        found: Array = patch[0] * self.edge_u + patch[1] * self.edge_v + patch[2] * self.up
+        found: Floats = patch[0] * self.edge_u + patch[1] * self.edge_v + patch[2] * self.up
         return found
 
-    def point(self, patch: Array) -> Array:
+    def point(self, patch: Floats) -> Floats:
         """A point of patch space in world space; exact where the polygon is a unit square at the origin."""
         return self.corner + self.vector(patch)
 
 
 @st.composite
-def points(draw: DrawFn, u: SearchStrategy[float], v: SearchStrategy[float], h: SearchStrategy[float]) -> Array:
+def points(draw: DrawFn, u: SearchStrategy[float], v: SearchStrategy[float], h: SearchStrategy[float]) -> Floats:
     """A point or direction in patch space."""
     return np.array([draw(u), draw(v), draw(h)])
 

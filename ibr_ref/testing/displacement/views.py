@@ -8,13 +8,11 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.scene import Camera, Light
 from ibr_ref.testing.displacement.shapes import Shape, points
 from ibr_ref.testing.numbers import often, real
-
-Array = NDArray[np.float64]
 
 WITHIN = real(0.01, 0.99)
 AROUND = real(-2.0, 3.0)
@@ -22,7 +20,7 @@ OUTSIDE = st.one_of(real(-2.0, -0.02), real(1.02, 3.0))
 BEYOND = real(1.05, 4.0)
 ON_PLANE = st.sampled_from([0.0, 1.0])
 
-EYES: dict[str, SearchStrategy[Array]] = {
+EYES: dict[str, SearchStrategy[Floats]] = {
     "straight above": points(WITHIN, WITHIN, BEYOND),
     "oblique": points(AROUND, AROUND, BEYOND),
     "far off": points(OUTSIDE, OUTSIDE, real(1.05, 2.0)),
@@ -38,7 +36,7 @@ EYES: dict[str, SearchStrategy[Array]] = {
 
 SIXTEENTHS = st.integers(-4, 20).map(lambda k: k / 16.0)
 
-ALIGNED: dict[str, tuple[Array, SearchStrategy[Array]]] = {
+ALIGNED: dict[str, tuple[Floats, SearchStrategy[Floats]]] = {
     "aligned from above": (
         np.array([0.0, 0.0, -1.0]),
         points(SIXTEENTHS, SIXTEENTHS, st.sampled_from([1.0, 2.0, 3.0, 4.0])),
@@ -59,7 +57,7 @@ SIZES = st.tuples(st.one_of(st.integers(12, 24), st.integers(12, 24), st.sampled
 """Width and height of pictures."""
 
 
-def up_for(forward: Array, wanted: Array) -> Array:
+def up_for(forward: Floats, wanted: Floats) -> Floats:
     """The wanted direction up, or another where that is nearly the line of sight."""
     sine = np.linalg.norm(np.cross(forward, wanted)) / (np.linalg.norm(forward) * np.linalg.norm(wanted))
     return wanted if sine > 0.05 else wanted[[1, 2, 0]]

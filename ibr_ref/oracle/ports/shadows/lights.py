@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats, Policy
+from ibr_ref.array_types import Floats
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.ports.shadows.raster import Raster
 from ibr_ref.oracle.ports.shadows.sampler import Sampler
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Floats
 from ibr_ref.oracle.ports.shadows.project import Project
 from ibr_ref.oracle.ports.shadows.resolve import Resolve
 from ibr_ref.oracle.ports.shadows.surface import Picture, Surface

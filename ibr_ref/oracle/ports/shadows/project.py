@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.ports.shadows.lights import Lights
-from ibr_ref.oracle.ports.shadows.raster import Flags, Raster
+from ibr_ref.oracle.ports.shadows.raster import Raster
 from ibr_ref.oracle.ports.shadows.sampler import Sampler
 from ibr_ref.oracle.ports.shadows.surface import Surface
 
@@ -51,15 +51,15 @@ class Project(Lights):
         """Depth in the light's range."""
         return np.clip(r, 0.0, 1.0)
 
-    def in_map(self, s: Floats, t: Floats) -> Flags:
+    def in_map(self, s: Floats, t: Floats) -> Bools:
         """Whether the map has something to say; its border belongs to it."""
         return (s >= 0.0) & (s <= 1.0) & (t >= 0.0) & (t <= 1.0)
 
-    def before_light(self, w: Floats) -> Flags:
+    def before_light(self, w: Floats) -> Bools:
         """Whether it is on the side that the light looks to."""
         return w > 0.0
 
-    def exempt(self, casts: Flags) -> Flags:
+    def exempt(self, casts: Bools) -> Bools:
         """The caster's own fragments, which masks cannot tell from what lies behind them."""
         return casts if self.params.content == "mask" else np.zeros_like(casts)
 
@@ -92,6 +92,6 @@ class Project(Lights):
         """Steps of 8 bits."""
         return np.floor(self.ops.add(self.ops.multiply(depth, 255.0), 0.5))
 
-    def behind(self, here: Floats, texel: Floats) -> Flags:
+    def behind(self, here: Floats, texel: Floats) -> Bools:
         """The comparison."""
         return here > texel

@@ -6,12 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats
-
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from ibr_ref.array_types import Bools, Floats, Ints
+from ibr_ref.oracle.arithmetic.device import Arithmetic
 
 MOST_PAIRS = 2**20
 """Of triangles and pixels that are looked at together."""
@@ -30,7 +27,7 @@ class Fragments:
     area: Floats
     """(N,) their sum."""
 
-    def take(self, chosen: Ints | Flags) -> Fragments:
+    def take(self, chosen: Ints | Bools) -> Fragments:
         """Some of them."""
         edges = (self.edges[0][chosen], self.edges[1][chosen], self.edges[2][chosen])
         return Fragments(self.triangle[chosen], self.pixel[chosen], edges, self.area[chosen])
@@ -102,11 +99,11 @@ class Raster:
         """Of pixels, on one axis of the window."""
         return np.asarray(pixel + 0.5, np.float64)
 
-    def owned(self, dx: Ints, dy: Ints) -> Flags:
+    def owned(self, dx: Ints, dy: Ints) -> Bools:
         """Whether a pixel centre on an edge (dx, dy), the inside on its right hand, y downwards, is inside: top or left."""
         return np.asarray((dy < 0) | ((dy == 0) & (dx > 0)), np.bool_)
 
-    def inside(self, edge: Ints, owned: Flags) -> Flags:
+    def inside(self, edge: Ints, owned: Bools) -> Bools:
         """Whether an edge function lets a pixel in."""
         return np.asarray((edge > 0) | ((edge == 0) & owned), np.bool_)
 
@@ -198,7 +195,7 @@ class Raster:
 
     # Output merger
 
-    def passes(self, depth: Floats, held: Floats) -> Flags:
+    def passes(self, depth: Floats, held: Floats) -> Bools:
         """The depth test."""
         return depth < held
 

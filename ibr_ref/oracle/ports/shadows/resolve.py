@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Floats
 from ibr_ref.oracle.ports.shadows.lights import Lights
 from ibr_ref.oracle.ports.shadows.surface import Surface
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats
-from ibr_ref.oracle.ports.shadows.raster import Ints
+from ibr_ref.array_types import Floats, Ints
+from ibr_ref.oracle.arithmetic.device import Arithmetic
 
 
 class Sampler:

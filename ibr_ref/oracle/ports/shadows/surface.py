@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.ports.shadows.maps import Maps
-from ibr_ref.oracle.ports.shadows.raster import Flags, Fragments, Ints, Raster
+from ibr_ref.oracle.ports.shadows.raster import Fragments, Raster
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Surface:
     """Three (N,)."""
     normal: list[Floats]
     """Flat, of unit length, as the triangle is wound; three (N,)."""
-    casts: Flags
+    casts: Bools
     """(N,) whether it is the caster's."""
     depth: Floats
     """(H W,) of the picture: 1 where nothing is seen."""
@@ -36,7 +36,7 @@ class Drawn:
     world: list[Floats]
     clip: list[Floats]
     color: list[Floats]
-    casts: Flags
+    casts: Bools
     """(T,)."""
 
 

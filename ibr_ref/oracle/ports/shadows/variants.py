@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats, Policy
+from ibr_ref.array_types import Floats
+from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.ports.shadows.port import Port
 from ibr_ref.oracle.ports.shadows.raster import Fragments, Raster

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Floats, Ints
 from ibr_ref.oracle.ports.shadows.lights import Lights
-from ibr_ref.oracle.ports.shadows.raster import Ints
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.ports.splatting.stage import Vector
 from ibr_ref.oracle.ports.splatting.unproject import Unprojection
-
-Bools = NDArray[np.bool_]
 
 COLUMNS, ROWS = 1, 0
 """The axes of an image's arrays along which neighbours are sought."""

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.arithmetic.device import Floats
-from ibr_ref.oracle.ports.splatting.normals import Bools
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.ports.splatting.raster import Fragments, Raster, Splats
 from ibr_ref.oracle.ports.splatting.stage import Vector
 from ibr_ref.oracle.ports.splatting.vertex import Vertex

@@ -7,7 +7,8 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Floats
+from ibr_ref.array_types import Floats
+from ibr_ref.oracle.arithmetic.device import Arithmetic
 
 Vector = Sequence[Floats]
 """Coordinates, or channels, of many points: an array each."""

@@ -6,7 +6,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Floats
 from ibr_ref.oracle.ports.splatting.stage import Stage
 
 

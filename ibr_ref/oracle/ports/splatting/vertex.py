@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.ports.splatting.atlas import Integers, Pages
 from ibr_ref.oracle.ports.splatting.lighting import Lighting
-from ibr_ref.oracle.ports.splatting.normals import Bools
 from ibr_ref.oracle.ports.splatting.stage import Vector
 from ibr_ref.oracle.ports.splatting.unproject import Unprojection
 

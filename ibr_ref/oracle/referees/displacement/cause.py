@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.number import Bools
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.displacement import MUTANTS

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Ints
 from ibr_ref.displacement.contract import STAGES
 from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.accept.bytes import allows_color
@@ -26,8 +27,6 @@ from ibr_ref.oracle.referees.displacement.replay import (
 )
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points
 
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 Field = Bounded | Ints | Bools
 
 

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.array_types import Ints
 from ibr_ref.oracle.accept.winners import Winners, winners
 from ibr_ref.oracle.arithmetic.decisions import joined
-from ibr_ref.oracle.arithmetic.number import Ints, Number
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.referees.displacement.model import CHUNK, Model
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades, Vector, absorbed, taken
 

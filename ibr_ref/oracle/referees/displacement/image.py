@@ -10,7 +10,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
+from ibr_ref.array_types import Bools, Floats, Ints
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.judgement import Handed, Judgement

@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.displacement.contract import STAGES as CONTRACT
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.bytes import allows_color
-from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.displacement.drawn_faces import judge_faces, other_faces
 from ibr_ref.oracle.referees.displacement.replay import Port, march_field, not_covered, raster_field, shade_field

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.array_types import Floats, Ints
 from ibr_ref.oracle.arithmetic.device import Policy
-from ibr_ref.oracle.arithmetic.number import Floats, Ints, Number
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.pipeline.machine import Machine

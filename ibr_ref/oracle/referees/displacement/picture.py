@@ -14,8 +14,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.winners import Winners, winners
-from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.pipeline.raster import Fragments

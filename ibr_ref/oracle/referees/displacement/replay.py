@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.number import Bools, Floats, Ints, Number
+from ibr_ref.array_types import Bools, Floats, Ints
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.programs.displacement.vertex import Quad

@@ -8,8 +8,9 @@ from typing import Any, Self
 
 import numpy as np
 
+from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.arithmetic.decisions import joined
-from ibr_ref.oracle.arithmetic.number import Bools, Ints, Number
+from ibr_ref.oracle.arithmetic.number import Number
 
 Vector = list[Any]
 Index = Any

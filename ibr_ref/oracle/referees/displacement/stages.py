@@ -7,7 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.number import Bools, Ints, Number
+from ibr_ref.array_types import Bools, Ints
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.displacement.hits import hits_of, lighted, shades_of
 from ibr_ref.oracle.referees.displacement.judging import (

@@ -6,14 +6,11 @@ from collections.abc import Sequence
 from functools import reduce
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.device import TINY, UNIT, Device
 from ibr_ref.oracle.referees.shadows.transform import centered, gamma
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 
 def accumulated(shadows: Sequence[Bounded], unorm8: bool) -> Bounded:

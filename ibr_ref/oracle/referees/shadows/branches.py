@@ -8,18 +8,14 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.referees.shadows import resolve
 from ibr_ref.oracle.referees.shadows.accumulate import accumulated
 from ibr_ref.oracle.referees.shadows.maps import VISIBLE
 from ibr_ref.oracle.referees.shadows.project import Shadow
 from ibr_ref.oracle.referees.shadows.surface import Seen
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 MOST_OPEN = 6
 """Open decisions of a fragment that are followed, 64 branches; a fragment with more is accepted and counted as undecided."""

@@ -13,13 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import RASTER
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.referees.shadows.transform import window
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CROSSING_ROUNDINGS = 5.0
 """Of a (1 - t) + b t, each relative to the larger of a and b: 1 - t, two products, a sum; one of the result."""

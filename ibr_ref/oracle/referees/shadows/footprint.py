@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 def reads(marked: Bools, u: Bounded, v: Bounded) -> Bools:

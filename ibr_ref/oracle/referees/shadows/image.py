@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.shadows import resolve
@@ -16,9 +16,6 @@ from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement
 from ibr_ref.oracle.referees.shadows.project import shadow
 from ibr_ref.oracle.referees.shadows.surface import Seen
-
-Bools = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

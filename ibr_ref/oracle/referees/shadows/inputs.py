@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp, stored, uploaded
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
@@ -20,8 +20,6 @@ from ibr_ref.oracle.referees.shadows.project import Coordinate, coordinate
 from ibr_ref.oracle.referees.shadows.surface import Seen, see
 from ibr_ref.oracle.referees.shadows.transform import Lens
 from ibr_ref.oracle.referees.shadows.warp import Source, between, pair, place_of, warped
-
-Floats = NDArray[np.float64]
 
 HANDED_OVER = ("maps.positions", "maps.image")
 """What the case hands over and a port may also make itself: with either it may go on, and for all of a stage with one."""

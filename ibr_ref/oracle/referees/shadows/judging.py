@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.judgement import Judgement
-
-Bools = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 
 
 def judgement(

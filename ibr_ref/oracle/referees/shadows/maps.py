@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import Fragments, fragments
 from ibr_ref.oracle.accept.seams import owners
@@ -17,11 +17,6 @@ from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.referees.shadows.clipping import clipped
 from ibr_ref.oracle.referees.shadows.transform import Lens, placed
 from ibr_ref.oracle.referees.shadows.varyings import Triangles, linear
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
-
 
 VISIBLE = 1.0 / 255.0
 """A step of what is shown: alternatives that differ by less are not counted as undecided."""

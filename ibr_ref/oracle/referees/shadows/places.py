@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, total, uploaded
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.referees.shadows.transform import Lens
-
-Floats = NDArray[np.float64]
 
 STEP = 2.0 / 3.0
 """g: the light's samples are at the centres of cells three to an edge (shadows/method.md, "Light samples")."""

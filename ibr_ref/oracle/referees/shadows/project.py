@@ -7,19 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded, converted, exact, uploaded
 from ibr_ref.oracle.accept.fetch import FILTER_ROUNDINGS, Texture, fetch, texels_near
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.referees.shadows.footprint import reads
 from ibr_ref.oracle.referees.shadows.maps import Map
 from ibr_ref.oracle.referees.shadows.transform import Lens, centered
-
-Floats = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
-
 
 TRUNCATED = 2.0
 """A device whose operations are rounded, or truncated, leaves x - 0 as it is."""

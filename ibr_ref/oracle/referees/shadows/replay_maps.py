@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.bounded import Bounded, stored, uploaded
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.reads import fed
@@ -15,8 +15,6 @@ from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement, stacked
 from ibr_ref.oracle.referees.shadows.places import Place
 
-Bools = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 Spot = tuple[Place, Place]
 
 

@@ -7,8 +7,8 @@ its depth, only those that agree with it, or all where none does, which is the d
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.bounded import converted, stored
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.reads import fed
@@ -19,9 +19,6 @@ from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement
 from ibr_ref.oracle.referees.shadows.maps import VISIBLE
 from ibr_ref.oracle.referees.shadows.project import Shadow, handed, shadow
-
-Bools = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 
 _WARPED = ("maps.", "controls", "warp.")
 

@@ -7,12 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.accept.bounded import Bounded, exact, uploaded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.referees.shadows.surface import Seen
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 def colors(scene: Any, seen: Seen, fragment: Ints, turned: Bools, shadow: Bounded) -> list[Bounded]:

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, opposite, unit, uploaded
 from ibr_ref.oracle.accept.coverage import Fragments, fragments
 from ibr_ref.oracle.accept.seams import owners
@@ -20,10 +20,6 @@ from ibr_ref.oracle.referees.shadows.clipping import clipped
 from ibr_ref.oracle.referees.shadows.maps import names_of
 from ibr_ref.oracle.referees.shadows.transform import Lens, placed
 from ibr_ref.oracle.referees.shadows.varyings import Triangles, linear, perspective
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded, exact, total, uploaded
 from ibr_ref.oracle.device import UNIT, Device
-
-Floats = NDArray[np.float64]
 
 MATRIX_ROUNDINGS = 13.0
 """Of every term of B (P (V p)), however it is bracketed: the uploads of P and V; P V with a product, three sums and a

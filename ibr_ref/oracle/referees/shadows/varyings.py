@@ -16,14 +16,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.accept.coverage import Fragments, snapped
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.referees.shadows.transform import gamma
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

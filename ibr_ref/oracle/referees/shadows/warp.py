@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp, stored
 from ibr_ref.oracle.accept.coverage import Fragments, fragments
 from ibr_ref.oracle.accept.fetch import Texture, fetch
 from ibr_ref.oracle.referees.shadows.places import Place, fraction_in, located
 from ibr_ref.oracle.referees.shadows.varyings import Triangles, linear
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

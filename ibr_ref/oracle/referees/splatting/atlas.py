@@ -7,14 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.accept.bounded import Bounded, uploaded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.splatting.table import stored_color
 from ibr_ref.oracle.referees.splatting.verdict import judgement
-
-Bools = NDArray[np.bool_]
 
 ARRAYS = ("atlas.rects", "atlas.color", "atlas.depth", "atlas.normal")
 

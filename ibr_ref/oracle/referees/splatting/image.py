@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded, converted, exact, stored, uploaded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.cases.case import Case
@@ -20,10 +20,6 @@ from ibr_ref.oracle.referees.splatting.place import Landed, landed, placed, worl
 from ibr_ref.oracle.referees.splatting.splats import buffered, contest
 from ibr_ref.oracle.referees.splatting.table import Table, fed_table, table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 VISIBLE = 1.0 / 255.0
 """Colours farther apart than one byte show."""

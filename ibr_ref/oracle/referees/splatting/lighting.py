@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, power, total, unit, uploaded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.referees.splatting.place import either
 
-Bools = NDArray[np.bool_]
 Vector = Sequence[Bounded]
 
 

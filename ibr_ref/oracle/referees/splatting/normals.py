@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, total, unit, uploaded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
@@ -19,9 +20,6 @@ from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.splatting.place import transform, view_points
 from ibr_ref.oracle.referees.splatting.table import cut_out
 from ibr_ref.oracle.referees.splatting.verdict import judgement
-
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 JUMP = 0.05
 """Neighbours farther apart than this share of the depth lie on different surfaces (splatting/method.md, "Stage normals")."""

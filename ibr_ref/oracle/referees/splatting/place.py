@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, stored, total, uploaded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.referees.splatting.table import Table
 
-Bools = NDArray[np.bool_]
 Vector = Sequence[Bounded]
 
 

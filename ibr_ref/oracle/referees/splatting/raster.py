@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
@@ -16,9 +17,6 @@ from ibr_ref.oracle.referees.splatting.splats import Contest, contest
 from ibr_ref.oracle.referees.splatting.table import Table, fed_table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
 from ibr_ref.splatting.contract import STAGES
-
-Bools = NDArray[np.bool_]
-Ints = NDArray[np.int64]
 
 ARRAYS = ("raster.splat", "raster.depth", "raster.overdraw")
 """raster.margin is what the reference knows of itself; a port need not have it, and it is not compared."""

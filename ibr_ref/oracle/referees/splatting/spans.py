@@ -10,14 +10,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import RASTER
 from ibr_ref.oracle.device import UNIT, Device
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 ROUNDINGS = 2.0
 """Of a border: c -+ w/2, and the half pixel that is taken from it, or the comparison with a pixel's centre."""

@@ -6,17 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.winners import winners
 from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.referees.splatting.place import Landed
 from ibr_ref.oracle.referees.splatting.spans import Axis, axis
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 CHUNK = 1 << 21
 """Pairs of a splat and a pixel that are looked at together: some 100 MB."""

@@ -9,13 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.accept.bounded import Bounded, stored, uploaded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.judgement import Handed
-
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.judgement import Judgement
-
-Bools = NDArray[np.bool_]
 
 
 def judgement(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import TINY, UNIT, Device
@@ -15,8 +16,6 @@ from ibr_ref.oracle.referees.splatting.place import Placed, placed
 from ibr_ref.oracle.referees.splatting.table import Table, table
 from ibr_ref.oracle.referees.splatting.verdict import judgement
 from ibr_ref.splatting.contract import STAGES
-
-Bools = NDArray[np.bool_]
 
 ARRAYS = ("vertex.source", "vertex.window", "vertex.depth", "vertex.width", "vertex.color")
 """In order of computation: the law of the width is taken at the distance of a point that has been placed."""

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.ports.shadows.mutants.catalogue import Catalogue
 from ibr_ref.oracle.ports.shadows.port import Arrays, Port
-from ibr_ref.oracle.ports.shadows.raster import Flags, Fragments, Ints, Raster
+from ibr_ref.oracle.ports.shadows.raster import Fragments, Raster
 from ibr_ref.oracle.ports.shadows.surface import Picture
 
 fault = Catalogue("depth")
 
 
 class _Greater(Raster):
-    def passes(self, depth: Floats, held: Floats) -> Flags:
+    def passes(self, depth: Floats, held: Floats) -> Bools:
         return np.asarray((held == 1.0) | (depth > held), np.bool_)
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.ports.shadows.mutants.catalogue import Catalogue
 from ibr_ref.oracle.ports.shadows.port import Port
-from ibr_ref.oracle.ports.shadows.raster import Flags, Ints, Raster
+from ibr_ref.oracle.ports.shadows.raster import Raster
 
 fault = Catalogue("maps")
 
@@ -103,7 +103,7 @@ class _ViewportOneLess(Port):
 
 
 class _Farthest(Raster):
-    def passes(self, depth: Floats, held: Floats) -> Flags:
+    def passes(self, depth: Floats, held: Floats) -> Bools:
         return np.asarray((held == 1.0) | (depth > held), np.bool_)
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.ports.shadows.mutants.catalogue import Catalogue
 from ibr_ref.oracle.ports.shadows.port import Port
-from ibr_ref.oracle.ports.shadows.raster import Flags, Fragments, Ints, Raster
+from ibr_ref.oracle.ports.shadows.raster import Fragments, Raster
 from ibr_ref.oracle.ports.shadows.sampler import Sampler
 
 fault = Catalogue("project")
@@ -63,25 +63,25 @@ class _HalfDepth(Port):
 
 @fault("outside-clamped", "beside the map its border is fetched")
 class _OutsideClamped(Port):
-    def in_map(self, s: Floats, t: Floats) -> Flags:
+    def in_map(self, s: Floats, t: Floats) -> Bools:
         return np.isfinite(s) & np.isfinite(t)
 
 
 @fault("behind-light", "the reverse projection behind the light casts shadows too", small=True)
 class _BehindLight(Port):
-    def before_light(self, w: Floats) -> Flags:
+    def before_light(self, w: Floats) -> Bools:
         return np.ones(w.shape, np.bool_)
 
 
 @fault("caster-shadows-itself", "masks fall on the caster's own fragments")
 class _OnCaster(Port):
-    def exempt(self, casts: Flags) -> Flags:
+    def exempt(self, casts: Bools) -> Bools:
         return np.zeros_like(casts)
 
 
 @fault("caster-exempt-from-depths", "the caster's own fragments are lit where depths are compared", small=True)
 class _Exempt(Port):
-    def exempt(self, casts: Flags) -> Flags:
+    def exempt(self, casts: Bools) -> Bools:
         return casts
 
 
@@ -181,19 +181,19 @@ class _BiasDoubled(Port):
 
 @fault("or-equal", "shadow where depths are equal too", small=True)
 class _OrEqual(Port):
-    def behind(self, here: Floats, texel: Floats) -> Flags:
+    def behind(self, here: Floats, texel: Floats) -> Bools:
         return here >= texel
 
 
 @fault("pcf-or-equal", "the four comparisons are GL_LEQUAL's: in shadow only where r - bias >= texel", small=True)
 class _PcfOrEqual(Port):
-    def behind(self, here: Floats, texel: Floats) -> Flags:
+    def behind(self, here: Floats, texel: Floats) -> Bools:
         return here >= texel if self.params.pcf else super().behind(here, texel)
 
 
 @fault("compare-ge", "shadow where depths are equal too, as they are beyond the light's far plane", small=True)
 class _CompareGe(Port):
-    def behind(self, here: Floats, texel: Floats) -> Flags:
+    def behind(self, here: Floats, texel: Floats) -> Bools:
         return here >= texel if self.params.quantize is None else super().behind(here, texel)
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.ports.shadows.mutants.catalogue import BELOW_A_BYTE, Catalogue
 from ibr_ref.oracle.ports.shadows.port import Arrays, Port
-from ibr_ref.oracle.ports.shadows.raster import Flags, Fragments, Raster
+from ibr_ref.oracle.ports.shadows.raster import Fragments, Raster
 from ibr_ref.oracle.ports.shadows.surface import Surface
 
 fault = Catalogue("resolve")
@@ -165,7 +165,7 @@ class _Truncated(Port):
 
 
 class _LessOrEqual(Raster):
-    def passes(self, depth: Floats, held: Floats) -> Flags:
+    def passes(self, depth: Floats, held: Floats) -> Bools:
         return depth <= held
 
 

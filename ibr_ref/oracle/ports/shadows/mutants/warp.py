@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.ports.shadows.mutants.catalogue import BELOW_A_BYTE, Catalogue
 from ibr_ref.oracle.ports.shadows.port import Port
-from ibr_ref.oracle.ports.shadows.raster import Flags, Ints, Raster
+from ibr_ref.oracle.ports.shadows.raster import Raster
 from ibr_ref.oracle.ports.shadows.sampler import Sampler
 
 fault = Catalogue("warp")
@@ -131,7 +131,7 @@ class _CornersAligned(Port):
 
 
 class _Strict(Raster):
-    def inside(self, edge: Ints, owned: Flags) -> Flags:
+    def inside(self, edge: Ints, owned: Bools) -> Bools:
         return np.asarray(edge > 0, np.bool_)
 
 
@@ -209,7 +209,7 @@ class _DirectFromCentre(Port):
 
 
 class _Back(Raster):
-    def passes(self, depth: Floats, held: Floats) -> Flags:
+    def passes(self, depth: Floats, held: Floats) -> Bools:
         return np.asarray((held == 1.0) | (depth > held), np.bool_)
 
 

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.ports.splatting.atlas import Integers
 from ibr_ref.oracle.ports.splatting.mutants.seeded import mutant
-from ibr_ref.oracle.ports.splatting.normals import Bools
 from ibr_ref.oracle.ports.splatting.vertex import Vertex
 
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.ports.splatting.mutants.seeded import mutant
-from ibr_ref.oracle.ports.splatting.normals import Bools, Normals
+from ibr_ref.oracle.ports.splatting.normals import Normals
 from ibr_ref.oracle.ports.splatting.stage import Vector
 
 _HIDDEN = "the light falls on the case's normals, not on the port's own"

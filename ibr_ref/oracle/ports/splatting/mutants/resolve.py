@@ -6,10 +6,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Floats
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.ports.splatting.atlas import Integers
 from ibr_ref.oracle.ports.splatting.mutants.seeded import mutant
-from ibr_ref.oracle.ports.splatting.normals import Bools
 from ibr_ref.oracle.ports.splatting.resolve import Resolve
 
 

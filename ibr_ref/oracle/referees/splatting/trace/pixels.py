@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.accept.bounded import Bounded, converted, exact, stored, uploaded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.accept.coverage import RASTER
@@ -20,9 +21,6 @@ from ibr_ref.oracle.referees.splatting.spans import axis, border
 from ibr_ref.oracle.referees.splatting.splats import Contest, buffered, contest
 from ibr_ref.oracle.referees.splatting.table import Table, fed_table
 from ibr_ref.oracle.referees.splatting.trace.points import alone, colored
-
-Bools = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 
 MOST = 8
 """Splats that are listed, the nearest first."""
