@@ -21,6 +21,8 @@ from ibr_ref.scene import checks
 LARGEST_FILE = 2**16
 FILTER_BYTES = 1.0 / 255.0
 """Of a filter that rounds to bytes: two lerps, one after the other, each to the nearest."""
+DEPTH_STEPS = {"float32": 0.0, "unorm24": 2.0**-24, "unorm16": 2.0**-16}
+"""Of depth buffers, by their formats."""
 
 
 class Number(NamedTuple):
@@ -66,9 +68,9 @@ NUMBERS: dict[str, Number] = {
         lambda device, over: {"minus_one": over == "minus_one_to_one"},
     ),
     "depth_format": Number(
-        ("float32", "unorm24", "unorm16"),
+        tuple(DEPTH_STEPS),
         "the depth buffer's",
-        lambda device, name: {"depth_step": {"float32": 0.0, "unorm24": 2.0**-24, "unorm16": 2.0**-16}[name]},
+        lambda device, name: {"depth_step": DEPTH_STEPS[name]},
     ),
     "unorm_rounding": Number(
         ("nearest", "either"),

@@ -142,6 +142,14 @@ class Explanation:
 
 
 @runtime_checkable
+class Glances(Protocol):
+    """A referee that can look at a few pixels of a picture much sooner than at all."""
+
+    def explains_pixels(self, case: Case, device: Device, handed: Handed, among: NDArray[np.bool_]) -> bool:
+        """Whether a device explains all pixels (H, W) `among`, by the picture alone."""
+
+
+@runtime_checkable
 class Explains(Protocol):
     """A judge that names bugs."""
 

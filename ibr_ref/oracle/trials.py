@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.declaration import ANY, Declaration
 from ibr_ref.oracle.device import LOOSEST, PROFILES, Device
-from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.judgement import Glances, Handed, Judgement
 from ibr_ref.oracle.referees import referee
 
 LIKELY = [name for name, device in PROFILES.items() if device.likely]
@@ -18,6 +21,9 @@ first stages. A picture takes all profiles the same time, and a broken one only 
 
 FREEDOMS: dict[str, Any] = {"subpixel_bits": 4, "filter_result": "unorm8"}
 """What devices in use do and no profile grants: rasterize with the standards' least precision, filter bytes in bytes."""
+
+FEW = 24
+"""Wrong pixels that are looked at before all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +70,7 @@ def tightest(case: Case, handed: Handed, declaration: Declaration = ANY) -> tupl
     tried: dict[str, int] = {}
 
     def trial(name: str, **more: Any) -> Trial:
-        device = Declaration(name, {**declaration.numbers, **more}).device(name)
+        device = _with(declaration.device(name), more)
         found = Trial(device, judge(case, handed, device, to_first_wrong=name != LOOSEST or bool(more)))
         tried[device.words] = found.wrong
         return found
@@ -75,27 +81,53 @@ def tightest(case: Case, handed: Handed, declaration: Declaration = ANY) -> tupl
     loosest = trial(LOOSEST)
     more: dict[str, Any] = {}
     if loosest.wrong:
-        more = {key: value for key, value in FREEDOMS.items() if key not in declaration.numbers}
-        if not more or trial(LOOSEST, **more).wrong:
+        more = _free(declaration.numbers)
+        if not more or _refuted(case, handed, loosest, more) or (right := trial(LOOSEST, **more)).wrong:
             return loosest, tried
-        for key in list(more) if len(more) > 1 else ():
-            fewer = {name: value for name, value in more.items() if name != key}
-            if not trial(LOOSEST, **fewer).wrong:
-                more = fewer
+        for key, value in more.items() if len(more) > 1 else ():
+            if not (alone := trial(LOOSEST, **{key: value})).wrong:
+                more, right = {key: value}, alone
                 break
+        loosest = right
     for name in PROFILES:
-        device = Declaration(name, {**declaration.numbers, **more}).device(name)
-        if device.words not in tried and not (found := trial(name, **more)).wrong:
+        if _with(declaration.device(name), more).words not in tried and not (found := trial(name, **more)).wrong:
             return found, tried
-    return (trial(LOOSEST, **more) if more else loosest), tried
+    return loosest, tried
+
+
+def _free(numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """The freedoms that nothing was said about."""
+    return {key: value for key, value in FREEDOMS.items() if key not in numbers}
+
+
+def _with(device: Device, more: Mapping[str, Any]) -> Device:
+    return Declaration(device.name, {**device.numbers, **more}).device(device.name)
+
+
+def _refuted(case: Case, handed: Handed, failed: Trial, more: Mapping[str, Any]) -> bool:
+    """Whether a few of the picture's wrong pixels are wrong with more numbers too, where that is soon known."""
+    judge_of, last = referee(case.method), failed.judgements[-1]
+    if last.stage != "image" or not last.wrong.any() or not isinstance(judge_of, Glances):
+        return False
+    wrong = np.flatnonzero(last.wrong)
+    few = np.zeros(last.wrong.size, np.bool_)
+    few[wrong[:: max(1, len(wrong) // FEW)]] = True
+    return not judge_of.explains_pixels(case, _with(failed.device, more), handed, few.reshape(last.wrong.shape))
 
 
 def needed(case: Case, handed: Handed, failed: Trial) -> dict[str, Any]:
     """What a device would need beside its numbers for the first wrong judgement of a trial to be right; nothing: no such."""
     wrong = next(i for i, j in enumerate(failed.judgements) if j.wrong.any())
-    for more in [{key: value} for key, value in FREEDOMS.items() if key not in failed.device.numbers]:
-        device = Declaration(failed.device.name, {**failed.device.numbers, **more}).device(failed.device.name)
-        found = judge(case, handed, device, to_first_wrong=True)
-        if len(found) > wrong and not found[wrong].wrong.any():
-            return more
-    return {}
+
+    def right(judgements: list[Judgement]) -> bool:
+        return len(judgements) > wrong and not judgements[wrong].wrong.any()
+
+    def explains(more: Mapping[str, Any]) -> bool:
+        if failed.judgements[wrong].stage == "image" and _refuted(case, handed, failed, more):
+            return False
+        return right(judge(case, handed, _with(failed.device, more), to_first_wrong=True))
+
+    free = _free(failed.device.numbers)
+    if not free or not explains(free):
+        return {}
+    return next((more for more in ({key: value} for key, value in free.items()) if explains(more)), free)

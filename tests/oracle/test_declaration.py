@@ -106,7 +106,7 @@ def test_a_right_port_of_four_bits_passes(name: str) -> None:
 
 
 def test_a_right_port_that_filters_bytes_in_bytes_passes() -> None:
-    case, arrays = drawn("displacement-rim", Policy(filtered_bytes=True, weight_bits=8))
+    case, arrays = drawn("displacement-low", Policy(filtered_bytes=True, weight_bits=8))
     found = oracle.examine(case, arrays).verdict
     assert (found.outcome, found.numbers) == (Outcome.PASS, {"filter_result": "unorm8"})
 

@@ -44,6 +44,11 @@ class Submission:
     """What the port says of its device."""
 
     @property
+    def profile(self) -> str | None:
+        """The profile in it."""
+        return self.declaration.profile
+
+    @property
     def usable(self) -> bool:
         """Whether it can be judged."""
         return not self.problems

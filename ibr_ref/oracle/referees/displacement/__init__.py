@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement, Parameter, TraceRow, up_to
@@ -48,6 +49,11 @@ class DisplacementReferee:
         """The final colour, and depth where it is handed in, from the case alone."""
         with np.errstate(all="ignore"):
             return image.judge_image(case, device, handed)
+
+    def explains_pixels(self, case: Case, device: Device, handed: Handed, among: Bools) -> bool:
+        """Whether no pixel (H, W) `among` is wrong."""
+        with np.errstate(all="ignore"):
+            return image.explains(case, device, handed, among)
 
     def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
         """The computation of one element of a stage, reference and port side by side."""

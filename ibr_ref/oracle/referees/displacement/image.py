@@ -33,6 +33,10 @@ LEAST = 2.0**-6
 """Nor does a box that is smaller than this part of the whole one."""
 LIKELY = 0.25
 """Of a box's half: around the place that the planes say, where most pixels of a right port are accepted at once."""
+LEVEL = 1e-12
+"""Slopes below it exclude nothing of a box: what a colour is off by, divided by them, is beyond any box."""
+MARGIN = 1e-6
+"""Of a box's half: what planes leave of it is cut in float64, and off by less."""
 MOST_BOXES = 200
 """Boxes of a pixel; beyond, it is accepted, and counts as undecided."""
 
@@ -151,7 +155,7 @@ def _narrow(x: Number, found: Floats, slack: float, low: Floats, high: Floats) -
         mine, other = slopes[k], slopes[1 - k]
         ends = np.stack([other * low[:, 1 - k], other * high[:, 1 - k]])
         bounds = np.stack([left - off - ends.max(axis=0), left + off - ends.min(axis=0)]) / mine
-        usable = np.abs(mine) > 1e-12
+        usable = np.abs(mine) > LEVEL
         low[:, k] = np.where(usable, np.maximum(low[:, k], bounds.min(axis=0)), low[:, k])
         high[:, k] = np.where(usable, np.minimum(high[:, k], bounds.max(axis=0)), high[:, k])
 
@@ -168,7 +172,7 @@ def _cut(boxes: Boxes, box: Ints, low: Floats, high: Floats, off: Floats) -> Box
         off=worst,
         fragment=here.fragment,
         middle=here.middle + 0.5 * (least + most) * here.half,
-        half=0.5 * (most - least) * here.half + 1e-6,
+        half=0.5 * (most - least) * here.half + MARGIN,
     )
     large = ((most - least) > 1.0).any(axis=1)
     return joined_boxes([left.take(~large), left.take(large).parts()])
@@ -190,6 +194,13 @@ def judge_image(case: Case, device: Device, handed: Handed, kind: type[Program] 
         width=hull_width(picture).reshape(shape),
         blame=blame.astype(np.int8).reshape(shape),
     )
+
+
+def explains(case: Case, device: Device, handed: Handed, among: Bools) -> bool:
+    """Whether every pixel (H, W) `among` has a legal outcome that agrees."""
+    few = among.reshape(-1)
+    picture = picture_of(case, device, among=few)
+    return bool(searched(picture, Shown.of(picture, handed), few).accepted[few].all())
 
 
 def searched(picture: Picture, shown: Shown, among: Bools | None = None) -> Search:
