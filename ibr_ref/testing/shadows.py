@@ -42,6 +42,13 @@ AXES = (
 """Unit vectors, scaled and exchanged ones, and oblique ones off the ground's plane."""
 
 
+WALLS = {
+    "beside": np.array([(1.2, -3.0, -2.0), (1.2, 3.0, -2.0), (1.4, 3.0, 6.0), (1.4, -3.0, 6.0)]),
+    "back": np.array([(3.0, 1.2, -2.0), (-3.0, 1.2, -2.0), (-3.0, 1.4, 9.0), (3.0, 1.4, 9.0)]),
+}
+"""Corners of plates that stand on the floor."""
+
+
 def colors(draw: DrawFn, vertices: int) -> Floats:
     """One for the mesh, or one a vertex."""
     random = np.random.RandomState(draw(seeds()))
@@ -68,13 +75,13 @@ def casters(draw: DrawFn) -> Mesh:
 
 @st.composite
 def receivers(draw: DrawFn) -> list[Mesh]:
-    """A floor under the caster; perhaps a wall beside it, and a plate behind the light."""
+    """A floor under the caster; perhaps a wall beside it, or one at the back that reaches above the light."""
     half, z = draw(real(2.0, 6.0, 4.0)), draw(real(-1.6, -0.8, -1.0))
     floor = np.array([(-half, -half, z), (half, -half, z), (half, half, z), (-half, half, z)])
     meshes = [Mesh(vertices=floor, triangles=[(0, 1, 2), (0, 2, 3)], color=colors(draw, 4))]
-    if draw(st.booleans()):
-        wall = np.array([(1.2, -3.0, -2.0), (1.2, 3.0, -2.0), (1.4, 3.0, 6.0), (1.4, -3.0, 6.0)])
-        meshes.append(Mesh(vertices=wall, triangles=[(0, 2, 1), (0, 3, 2)], color=colors(draw, 4)))
+    wall = draw(st.sampled_from(["", "beside", "back"]))
+    if wall:
+        meshes.append(Mesh(vertices=WALLS[wall], triangles=[(0, 2, 1), (0, 3, 2)], color=colors(draw, 4)))
     return meshes
 
 
@@ -99,11 +106,11 @@ def lights(draw: DrawFn, axes: Floats, range_: Floats) -> AreaLight:
 
 @st.composite
 def cameras(draw: DrawFn, sizes: SearchStrategy[tuple[int, int]] = SIZES) -> Camera:
-    """From beside and above, as it looks at the floor."""
+    """From beside and above, as it looks at the floor, and now and then up."""
     width, height = draw(sizes)
     view: dict[str, Any] = {
         "eye": (draw(real(-3.0, 3.0)), draw(real(-4.0, -1.0)), draw(real(0.2, 4.0, 1.0))),
-        "target": (draw(real(-0.5, 0.5, 0.0)), 0.0, -0.8),
+        "target": (draw(real(-0.5, 0.5, 0.0)), 0.0, draw(st.sampled_from([-0.8, -0.8, -0.8, 1.5]))),
         "near": draw(st.sampled_from([0.1, 1.5])),
         "far": 20.0,
         "width": width,

@@ -140,7 +140,6 @@ def test_missing_folders_are_made(maps_case: Case, tmp_path: Path) -> None:
         ({"kind": "hard"}, "kind"),
         ({"profile": "abacus"}, "abacus"),
         ({"name": "a/b"}, "a/b"),
-        ({"name": ""}, "name"),
         ({"name": "../x"}, "../x"),
         ({"inputs": {"maps": 3}}, "maps"),
     ],
