@@ -16,6 +16,7 @@ from ibr_ref.oracle.declaration import ANY, Declaration, declared
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.findings import Bias, Box, Outcome, StageVerdict, TraceStep, Witness
 from ibr_ref.oracle.judgement import Explains, Explanation, Handed, Judgement, TraceRow
+from ibr_ref.oracle.power import drawn, share_of_drawn
 from ibr_ref.oracle.referees import referee
 from ibr_ref.oracle.referees.rows import heading, text
 from ibr_ref.oracle.trials import Trial, judge, needed, tightest
@@ -81,9 +82,8 @@ def examine(
     image = next((j for j in judgements if j.stage == "image"), None)
     if image is not None:
         # Of what is drawn: a background is decided anywhere, and its width is none.
-        drawn = image.undecided | (case.frame.depth < 1.0)
-        fields["undecided_share"] = float(image.undecided[drawn].mean()) if drawn.any() else 0.0
-        fields["median_width"] = _median(image.width[drawn])
+        fields["undecided_share"] = share_of_drawn(case, image)
+        fields["median_width"] = _median(image.width[drawn(case, image)])
     wrong = _first_wrong(judgements)
     found: tuple[Bias, ...] = ()
     if image is not None:

@@ -93,7 +93,7 @@ def test_how_much_a_case_judges() -> None:
     assert device.profile_of(shares) == "webgpu"
     line = power.said(shares)
     assert line.startswith("judges 99.9 % under ieee32, 99.6 % under d3d11")
-    assert line.endswith("24.0 % under gl (of the pixels); meant for webgpu")
+    assert line.endswith("24.0 % under gl (of the drawn pixels); meant for webgpu")
     assert "which is little" in power.said({"ieee32": 0.3, "gl": 0.4})
     assert device.profile_of({"ieee32": 0.3, "gl": 0.4}) == "ieee32"
 
