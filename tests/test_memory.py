@@ -14,16 +14,25 @@ GIB = 2**30
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="getrusage, which tells the peak, is not on Windows")
 
+PEAK = r"""
+import re, resource
+try:
+    with open("/proc/self/status") as file:
+        print(1024 * int(re.search(r"VmHWM:\s+(\d+)", file.read())[1]))
+except OSError:
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    print(peak if sys.platform == "darwin" else 1024 * peak)
+"""
+"""Where the system says it: getrusage begins with what the parent had when it started the process."""
+
 SCRIPT = """
-import resource, sys
+import sys
 import ibr_ref
 from ibr_ref import displacement, models
 camera = ibr_ref.Camera.look_at(eye=(0.6, -0.75, 0.65), target=(0, 0, 0), near=0.1, far=10, width=4096, height=4096)
 scene = displacement.Scene(polygons=[models.box()], camera=camera, light=ibr_ref.Light(direction=(0.5, -0.8, 1)))
 frame = displacement.render(scene, stages=sys.argv[1] == "stages")
 assert frame.color.shape == (4096, 4096, 3)
-peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-print(peak if sys.platform == "darwin" else 1024 * peak)
 """
 
 
@@ -36,19 +45,17 @@ def printed(*arguments: str) -> str:
 
 @pytest.mark.parametrize("kept", ["picture", "stages"])
 def test_a_frame_of_4096_x_4096_stays_under_4_gib(kept: str) -> None:
-    assert int(printed("-c", SCRIPT, kept)) < 4 * GIB
+    assert int(printed("-c", SCRIPT + PEAK, kept)) < 4 * GIB
 
 
 LARGE_MAP = """
-import resource, sys
+import sys
 from ibr_ref import cli
 sys.argv = ["ibr-ref", "render", "displacement", "--height", sys.argv[1], "--out", sys.argv[2], "--size", "1920x1080"]
 try:
     cli.main()
 except SystemExit as end:
     assert not end.code, end.code
-peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-print(peak if sys.platform == "darwin" else 1024 * peak)
 """
 
 
@@ -58,7 +65,7 @@ def test_a_float_height_map_of_8192_x_8192_stays_under_2_gib(tmp_path: Path) -> 
         file.write(b"Pf\n8192 8192\n-1\n")
         for row in rows:
             file.write((row * rows).tobytes())
-    assert int(printed("-c", LARGE_MAP, str(tmp_path / "a.pfm"), str(tmp_path / "a.png"))) < 2 * GIB
+    assert int(printed("-c", LARGE_MAP + PEAK, str(tmp_path / "a.pfm"), str(tmp_path / "a.png"))) < 2 * GIB
 
 
 def test_50_million_points_stay_under_8_gib() -> None:

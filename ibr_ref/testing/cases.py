@@ -15,7 +15,7 @@ from hypothesis.strategies import DrawFn, SearchStrategy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.splatting import case as splatting_case
 from ibr_ref.scene import Camera, Light, checks
-from ibr_ref.shadows import prepare
+from ibr_ref.shadows import Params, prepare
 from ibr_ref.testing import displacement, shadows, splatting
 
 PROFILE = "ieee32"
@@ -63,7 +63,10 @@ def splatting_cases(draw: DrawFn) -> Case:
 def shadow_cases(draw: DrawFn) -> Case:
     """Shadows by warped maps and by rendered ones."""
     found = draw(shadows.drawn(PIXELS))
-    params = found.params
+    usual = Params()
+    params = replace(  # no case has a grid
+        found.params, grid_size=usual.grid_size, grid_mix=usual.grid_mix, grid_storage=usual.grid_storage
+    )
     if params.method == "grid":
         params = replace(params, method="warp")
     _assume_room(found.scene.camera)
