@@ -132,6 +132,19 @@ class Choices(Decisions):
         like = self.of(like)
         return Number(self, np.full(like.shape, value), np.zeros(like.shape), {}, like.lane)
 
+    def in_lanes(self, x: Any, like: Any) -> Number:
+        """A number of the whole case for each row of `like`: what is decided of it is decided lane by lane, both ways."""
+        x, like = self.of(x), self.of(like)
+
+        def each(a: Any) -> Any:
+            return np.broadcast_to(a, like.shape)
+
+        return Number(self, each(x.value), each(x.error), {k: each(slope) for k, slope in x.slopes.items()}, like.lane)
+
+    def surely(self, truth: Any) -> bool:
+        """Whether something holds for all rows, whatever is decided."""
+        return bool(np.all(truth.must if isinstance(truth, Truth) else truth))
+
     def replaced(self, x: Any, where: Any, by: Any) -> Number:
         """With other rows at some places."""
         x, by = self.of(x), self.of(by)

@@ -112,6 +112,14 @@ class Arithmetic:
         """The same number for each row of `like`."""
         return np.full(np.shape(like), value)
 
+    def in_lanes(self, x: Any, like: Any) -> Any:
+        """A number of the whole case for each row of `like`."""
+        return np.broadcast_to(x, np.shape(like))
+
+    def surely(self, truth: Any) -> bool:
+        """Whether something holds for all rows."""
+        return bool(np.all(truth))
+
     # --- Rows ---------------------------------------------------------------------------------------------------------
 
     def replaced(self, x: Any, where: Any, by: Any) -> Any:

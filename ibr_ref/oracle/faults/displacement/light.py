@@ -265,5 +265,5 @@ class _BeyondLamp(Port):
 class _NoHorizon(Port):
     """A light below the polygon shines."""
 
-    def light_below_horizon(self, light: Vector) -> bool:
-        return False
+    def light_below_horizon(self, height: Floats) -> Bools:
+        return np.zeros(height.shape, np.bool_)

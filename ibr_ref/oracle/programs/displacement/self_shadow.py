@@ -17,7 +17,8 @@ class SelfShadow(March):
         """Not in shadow; without samples everything is lit."""
         if self.params.shadow_steps == 0:
             return np.ones(hit[0].shape, bool)
-        if self.light_below_horizon(patch.light):
+        below = self.light_below_horizon(self.do.in_lanes(patch.light[2], hit[0]))
+        if self.do.surely(below):
             return np.zeros(hit[0].shape, bool)
         way = self.towards(patch.light, hit)
         stretch = self.stretch(patch, hit, way)
@@ -26,11 +27,11 @@ class SelfShadow(March):
             share = self.do.multiply(stretch, self.shadow_fraction(j))
             u, v, h = (self.multiply_add(d, share, x) for x, d in zip(hit, way, strict=True))
             shadowed = shadowed | self.in_shadow(patch, h, self.height_at(patch, u, v))
-        return ~shadowed | (stretch <= 0.0)
+        return (~shadowed | (stretch <= 0.0)) & ~below
 
-    def light_below_horizon(self, light: Vector) -> bool:
+    def light_below_horizon(self, height: Floats) -> Bools:
         """Below the polygon's plane, or in it."""
-        return bool(light[2] <= 0.0)
+        return height <= 0.0
 
     def stretch(self, patch: Patch, hit: Vector, way: Vector) -> Floats:
         """How much of the way is searched: to the border of the cube (of a repeated map: to the top), or to the light."""
