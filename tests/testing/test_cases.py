@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from ibr_ref import methods, oracle
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.testing import bug_of, cases, drawing
+from tests.oracle.devices import random_policy
 
 QUIET = settings(
     database=None, deadline=None, max_examples=25, phases=[Phase.generate], suppress_health_check=list(HealthCheck)
@@ -38,6 +40,21 @@ def test_a_right_port_is_right_on_them(method: str, one_thread: None) -> None:
     QUIET(seed(7)(given(cases(method))(right)))()
     shown = [case for case in seen if (case.frame.depth < 1.0).any()]
     assert len(shown) > len(seen) / 4
+
+
+@pytest.mark.parametrize("method", methods.names())
+def test_random_devices_are_right_on_them(method: str, one_thread: None) -> None:
+    """Lights in the polygon's plane, slivers without an area, axes along the view: what no built-in case has."""
+    random = np.random.default_rng(3)
+    port = methods.named(method).plain_port
+    assert port is not None
+
+    def right(case: Case) -> None:
+        policy, profile = random_policy(random)
+        arrays = port.open().Port(case.scene, case.params, replace(policy, color_bits=None), case.inputs).render()
+        assert bug_of(case, drawing(lambda case: arrays), profile) is None, policy
+
+    settings(QUIET, max_examples=40)(seed(3)(given(cases(method))(right)))()
 
 
 def test_they_shrink_to_a_pixel(one_thread: None) -> None:

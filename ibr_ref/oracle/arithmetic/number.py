@@ -54,7 +54,8 @@ class Number(_Speaks):
     def deviation(self) -> Any:
         """How far a legal number may be from the value."""
         if self._deviation is None:
-            self._deviation = reduce(np.add, [np.abs(s) for s in self.slopes.values()], self.error)
+            found = reduce(np.add, [np.abs(s) for s in self.slopes.values()], self.error)
+            self._deviation = np.where(np.isnan(found), np.inf, found)  # a slope without an end, times nothing
         return self._deviation
 
     @property
@@ -179,7 +180,8 @@ class Number(_Speaks):
         gap = self.plus(other, -1.0)
         value, off = sign * gap.value, gap.deviation
         with np.errstate(invalid="ignore"):
-            may, must = (value + off > 0, value - off > 0) if strict else (value + off >= 0, value - off >= 0)
+            # Said the other way round: what is no number may be anything.
+            may, must = (~(value + off <= 0), value - off > 0) if strict else (~(value + off < 0), value - off >= 0)
         return Truth(self.ops, may, must, gap.lane, value)
 
     def __gt__(self, other: Any) -> Truth:

@@ -25,6 +25,9 @@ differences, the product, the sum: 4. As a plane q_0 + (dq/dx)(x - x_0) + (dq/dy
 positions, their product, the sum of two, the quotient by the area (whose own product and sum are 2 more), a difference of
 positions, the product with it, and two sums: 9 and a quotient."""
 
+FARTHEST = 1e6
+"""Pixels: a triangle that may have no area has its point anywhere, which is within this; numbers stay finite."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fragments:
@@ -93,7 +96,7 @@ def fragments_of(program: Any, triangles: list[tuple[int, list[Any]]], polygon: 
         weights=value,
         rounding=rounding,
         gradient=gradient,
-        moved=found.moved,
+        moved=np.minimum(found.moved, FARTHEST),
     )
     return result.take(drawn[t])
 

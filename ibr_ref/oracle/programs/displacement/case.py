@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-import numpy as np
-
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.scene.checks import reject
 
@@ -105,5 +103,5 @@ class Case:
     def towards(self, goal: Vector, point: Vector) -> Vector:
         """The way from points to a homogeneous goal (x, y, z, w): goal - w point. A direction needs no point."""
         if goal[3] == 0.0:
-            return [np.broadcast_to(x, point[0].shape) for x in goal[:3]]
+            return [self.do.in_lanes(x, point[0]) for x in goal[:3]]
         return [self.do.subtract(x, p) for x, p in zip(goal[:3], point, strict=True)]

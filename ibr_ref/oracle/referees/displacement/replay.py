@@ -180,9 +180,9 @@ def march_input(port: Port, candidates: Points) -> tuple[Points, Bools]:
 
 
 def _face_depth(known: Points | Hits, pixel: Ints, polygon: Ints, face: Ints | None) -> Number:
-    """Window depth of the faces, as the candidates have it; unknown where there is no such candidate.
+    """Window depth of the faces, all that their candidates may have; unknown where there is no such candidate.
 
-    Without a face: of any that the pixel's candidates of that polygon have, all of which lie in one another's bounds.
+    Without a face: of any of that polygon at the pixel. A face that the near plane cuts may have several triangles there.
     """
 
     def keys(p: Ints, q: Ints, f: Ints | None) -> Ints:
@@ -192,12 +192,14 @@ def _face_depth(known: Points | Hits, pixel: Ints, polygon: Ints, face: Ints | N
     if len(known):
         have = keys(known.pixel, known.polygon, None if face is None else known.face)
         order = np.argsort(have, kind="stable")
+        names, first = np.unique(have[order], return_index=True)
         wanted = keys(pixel, polygon, face)
-        at = np.minimum(np.searchsorted(have[order], wanted), len(order) - 1)
-        found = have[order][at] == wanted
-        rows = order[at[found]]
-        depth = known.depth[rows]
-        value[found], error[found] = depth.value, depth.deviation
+        at = np.minimum(np.searchsorted(names, wanted), len(names) - 1)
+        found = names[at] == wanted
+        depth = known.depth[order]
+        low, high = np.minimum.reduceat(depth.low, first), np.maximum.reduceat(depth.high, first)
+        middle = depth.value[first]
+        value[found], error[found] = middle[at[found]], np.maximum(high - middle, middle - low)[at[found]]
     return Number(known.depth.ops, value, error)
 
 
