@@ -134,7 +134,8 @@ class Search:
         good, away = np.ones(len(pixel), np.bool_), np.zeros(len(pixel))
         with np.errstate(all="ignore"):
             for x, found, slack, step in tests:
-                near = np.abs(found - x.value) <= x.deviation + slack
+                # Said the other way round: a result that is no number, between no ends, may be any.
+                near = np.isfinite(found) & ~(np.abs(found - x.value) > x.deviation + slack)
                 good &= near
                 away = np.fmax(away, x.error / step)
             if shown.depth is not None:
