@@ -7,11 +7,8 @@ prints how many were read and refused, and each input that was neither: `--only 
 
 from __future__ import annotations
 
-import argparse
 import random
-import signal
 import sys
-import tempfile
 from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,7 +19,8 @@ from ibr_ref import io
 from tests.io import exr_writer
 from tests.io.depth_sets import shots, writers
 from tests.io.depth_sets.test_formats import OWN, npy, pair
-from tests.io.fuzz_meshes import LONGEST_MESSAGE, MOST_SECONDS, changed, limits
+from tests.io.fuzz_meshes import changed
+from tests.io.fuzzing import LONGEST_MESSAGE, TooLong, clock, limits, run
 
 OUTCOMES = ("read", "refused", "traceback", "undocumented", "hang", "memory", "message")
 K = {"intrinsics": writers.tum_intrinsics(shots.K)}
@@ -45,10 +43,6 @@ SETS = {
 }
 
 
-class _TooLong(BaseException):
-    """Raised by the clock; no decoder catches it."""
-
-
 def written(folder: Path) -> dict[str, tuple[Path, list[Path]]]:
     """Each set's folder and files; those that say most about it are in it more often."""
     result = {}
@@ -69,24 +63,17 @@ def change(path: Path, chance: random.Random) -> bytes:
 
 def outcome(name: str, folder: Path) -> tuple[str, str]:
     """What became of a set: read, refused, or what must not be, and how."""
-
-    def ring(*_: object) -> None:
-        raise _TooLong
-
-    signal.signal(signal.SIGVTALRM, ring)
-    signal.setitimer(signal.ITIMER_VIRTUAL, MOST_SECONDS)
     try:
-        set_ = io.read_depth_set(folder, name.split("-")[0], **SETS[name][1])
-        bad = [image for image in set_ if not np.isfinite(image.points).all()]
+        with clock():
+            set_ = io.read_depth_set(folder, name.split("-")[0], **SETS[name][1])
+            bad = [image for image in set_ if not np.isfinite(image.points).all()]
         return ("traceback", "points that are not finite") if bad else ("read", "")
-    except _TooLong:
+    except TooLong:
         return "hang", ""
     except (OSError, ValueError) as error:
         return _message(str(error), str(folder))
     except Exception as error:
         return "traceback", f"{type(error).__name__} {error}"
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
 
 
 def _message(text: str, folder: str) -> tuple[str, str]:
@@ -119,18 +106,5 @@ def tally(folder: Path, count: int, seed: int, only: int | None = None) -> Count
     return found
 
 
-def main(arguments: list[str]) -> int:
-    """Print the figures; 1 where something was neither read nor refused."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--only", type=int)
-    options = parser.parse_args(arguments)
-    with tempfile.TemporaryDirectory() as folder:
-        found = tally(Path(folder), options.count, options.seed, options.only)
-    print(", ".join(f"{found[name]} {name}" for name in OUTCOMES))
-    return int(sum(found.values()) != found["read"] + found["refused"])
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(run(sys.argv[1:], __doc__, tally, OUTCOMES))

@@ -7,11 +7,8 @@ prints how many were read and refused, and each input that was neither: `--only 
 
 from __future__ import annotations
 
-import argparse
 import random
-import signal
 import sys
-import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -23,11 +20,9 @@ import numpy as np
 from ibr_ref import io
 from ibr_ref.io import exr, pfm
 from tests.io import exr_writer, png_writer, tiff_writer
-from tests.io.fuzz_meshes import limits
+from tests.io.fuzzing import LONGEST_MESSAGE, TooLong, clock, limits, run
 
-LONGEST_MESSAGE = 400
-MOST_SECONDS = 10.0
-"""Of processor time: the files have some thousand bytes."""
+OUTCOMES = ("read", "refused", "no heights", "traceback", "hang", "message")
 _WORDS = [0, 1, 2, 3, 7, 8, 16, 255, 256, 32767, 32768, 65535, 2**31 - 1, 2**31, 2**32 - 1]
 
 
@@ -110,16 +105,12 @@ def _longer(data: bytes, chance: random.Random) -> bytes:
     return chance.choice((data[:end] + data[begin:], data + bytes(chance.randrange(1, 99))))
 
 
-class _TooLong(BaseException):
-    """Raised by the clock; no decoder catches it."""
-
-
 def outcome(path: Path, options: dict[str, Any]) -> tuple[str, str]:
     """What became of a file: read, refused, or what must not be, and how."""
-    signal.setitimer(signal.ITIMER_VIRTUAL, MOST_SECONDS)
     try:
-        heights = io.read_height(path, **options)
-    except _TooLong:
+        with clock():
+            heights = io.read_height(path, **options)
+    except TooLong:
         return "hang", ""
     except (OSError, ValueError) as error:
         said = str(error).removeprefix(f"{path}: ")
@@ -127,8 +118,6 @@ def outcome(path: Path, options: dict[str, Any]) -> tuple[str, str]:
         return ("refused" if ours and len(said) <= LONGEST_MESSAGE and said.isprintable() else "message"), str(error)
     except Exception as error:
         return "traceback", f"{type(error).__name__} {error}"
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
     right = heights.ndim == 2 and heights.dtype == np.float64 and ((heights >= 0.0) & (heights <= 1.0)).all()
     return ("read", "") if right else ("no heights", f"{heights.dtype} {heights.shape}")
 
@@ -142,10 +131,6 @@ def inputs(count: int, seed: int, only: int | None = None) -> Iterator[tuple[int
         yield k, item, changed(item.data, chance)
 
 
-def _ring(*_: object) -> None:
-    raise _TooLong
-
-
 def tally(folder: Path, count: int, seed: int, only: int | None = None) -> Counter[str]:
     """Outcomes of so many inputs; all that must not be is printed."""
     found: Counter[str] = Counter()
@@ -154,7 +139,6 @@ def tally(folder: Path, count: int, seed: int, only: int | None = None) -> Count
         path.write_bytes(item.data)
         io.read_height(path, **item.options)  # and what reads them has its own memory
     with limits():
-        signal.signal(signal.SIGVTALRM, _ring)
         for k, item, data in inputs(count, seed, only):
             path = folder / item.name
             path.write_bytes(data)
@@ -165,18 +149,5 @@ def tally(folder: Path, count: int, seed: int, only: int | None = None) -> Count
     return found
 
 
-def main(arguments: list[str]) -> int:
-    """Print the figures; 1 where something was neither read nor refused."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--only", type=int)
-    options = parser.parse_args(arguments)
-    with tempfile.TemporaryDirectory() as folder:
-        found = tally(Path(folder), options.count, options.seed, options.only)
-    print(", ".join(f"{number} {kind}" for kind, number in found.most_common()))
-    return int(sum(found.values()) != found["read"] + found["refused"])
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(run(sys.argv[1:], __doc__, tally, OUTCOMES))

@@ -7,29 +7,19 @@ prints how many were read and refused, and each input that was neither: `--only 
 
 from __future__ import annotations
 
-import argparse
 import json
 import random
 import re
-import resource
-import signal
 import sys
-import tempfile
-import warnings
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from ibr_ref import io
 from tests.io import corpus, plain
+from tests.io.fuzzing import LONGEST_MESSAGE, TooLong, clock, limits, run
 from tests.io.same_surface import difference
 
-LONGEST_MESSAGE = 400
-MOST_SECONDS = 10.0
-"""Of processor time: the files have some thousand bytes."""
-MOST_BYTES = 2**29
-"""Of memory, beyond what the process has."""
 LARGEST = 20_000
 """Bytes of a file that is changed."""
 
@@ -150,42 +140,17 @@ def _places(tree: object) -> Iterator[tuple[object, object]]:
         yield from _places(value)
 
 
-class _TooLong(BaseException):
-    """Raised by the clock; no decoder catches it."""
-
-
-@contextmanager
-def limits() -> Iterator[None]:
-    """Within these a process has a little more memory than before, and warnings are errors."""
-
-    def ring(*_: object) -> None:
-        raise _TooLong
-
-    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    before, handler = resource.getrlimit(resource.RLIMIT_AS), signal.signal(signal.SIGVTALRM, ring)
-    resource.setrlimit(resource.RLIMIT_AS, (used + MOST_BYTES, before[1]))
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_AS, before)
-        signal.signal(signal.SIGVTALRM, handler)
-
-
 def outcome(path: Path) -> tuple[str, str]:
     """What became of a file: read, refused, or what must not be, and how."""
-    signal.setitimer(signal.ITIMER_VIRTUAL, MOST_SECONDS)
     try:
-        mesh = io.read_mesh(path)
-    except _TooLong:
+        with clock():
+            mesh = io.read_mesh(path)
+    except TooLong:
         return "hang", ""
     except (OSError, ValueError) as error:
         return _message(str(error), str(path))
     except Exception as error:
         return "traceback", f"{type(error).__name__} {error}"
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
     try:
         problem = difference(mesh, plain.read(path))
     except plain.Refused as error:
@@ -215,19 +180,6 @@ def inputs(count: int, seed: int, only: int | None = None) -> Iterator[tuple[int
         yield k, item, changed(item, chance)
 
 
-def main(arguments: list[str]) -> int:
-    """Print the figures; 1 where something was neither read alike nor refused."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--only", type=int)
-    options = parser.parse_args(arguments)
-    with tempfile.TemporaryDirectory() as folder:
-        found = tally(Path(folder), options.count, options.seed, options.only)
-    print(", ".join(f"{found[name]} {name}" for name in OUTCOMES))
-    return int(sum(found.values()) != found["read"] + found["refused"])
-
-
 OUTCOMES = ("read", "refused", "disagreement", "traceback", "undocumented", "hang", "memory", "message")
 
 
@@ -249,4 +201,4 @@ def tally(folder: Path, count: int, seed: int, only: int | None = None) -> Count
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(run(sys.argv[1:], __doc__, tally, OUTCOMES))
