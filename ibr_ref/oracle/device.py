@@ -74,9 +74,9 @@ class Device:
         return 2.0**-self.subpixel_bits if self.subpixel_any else 0.0
 
 
-def spelled(profile: str, numbers: Mapping[str, int | str]) -> str:
-    """As it is declared: "gl,subpixel_bits=4"."""
-    return ",".join([profile, *(f"{name}={value}" for name, value in numbers.items())])
+def spelled(profile: str | None, numbers: Mapping[str, int | str]) -> str:
+    """As it is declared: "gl,subpixel_bits=4", or numbers alone."""
+    return ",".join([*([profile] if profile else []), *(f"{name}={value}" for name, value in numbers.items())])
 
 
 _DEVICES: list[Device] = []

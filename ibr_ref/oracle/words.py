@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from itertools import groupby
 
+from ibr_ref.oracle.device import spelled
 from ibr_ref.oracle.findings import Findings, Outcome, StageVerdict, Witness
 from ibr_ref.oracle.referees.rows import DIFFERS
 
@@ -22,7 +23,7 @@ def words(verdict: Findings, *, trace: bool = True) -> str:
         lines.append(_witness_line(witness, first=witness is verdict.witness))
         lines += folded(_trace_lines(witness)) if trace else []
     if verdict.needs:
-        needs = ",".join(f"{name}={value}" for name, value in verdict.needs.items())
+        needs = spelled(None, verdict.needs)
         lines.append(f"  {verdict.first_wrong_stage} would be right with {needs}: declare it if your device has it.")
     lines += _causes(verdict)
     for convention in verdict.conventions:

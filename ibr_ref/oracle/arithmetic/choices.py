@@ -127,11 +127,6 @@ class Choices(Decisions):
         above, below = (self.rising(f, x) for f in (lambda v: np.maximum(v, least), lambda v: np.minimum(v, -least)))
         return self.where(up, above, below)
 
-    def constant(self, value: float, like: Any) -> Number:
-        """The same number for each row of `like`, in its lanes."""
-        like = self.of(like)
-        return Number(self, np.full(like.shape, value), np.zeros(like.shape), {}, like.lane)
-
     def in_lanes(self, x: Any, like: Any) -> Number:
         """A number of the whole case for each row of `like`: what is decided of it is decided lane by lane, both ways."""
         x, like = self.of(x), self.of(like)

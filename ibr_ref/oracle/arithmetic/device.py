@@ -108,10 +108,6 @@ class Arithmetic:
         """What is decided to be >= `least` (`up`), or <= -`least`."""
         return x
 
-    def constant(self, value: float, like: Any) -> Any:
-        """The same number for each row of `like`."""
-        return np.full(np.shape(like), value)
-
     def in_lanes(self, x: Any, like: Any) -> Any:
         """A number of the whole case for each row of `like`."""
         return np.broadcast_to(x, np.shape(like))

@@ -46,7 +46,7 @@ class _ParallelAsPoint(Port):
         eye = patch.eye
         below = self.towards([*eye[:3], np.ones(())], point)
         ends = self.on_ground(point, below), self.on_top(point, below)
-        one = self.do.widened(self.do.constant(1.0, point[2]), quotients=1, operations=3)
+        one = self.do.widened(self.do.in_lanes(1.0, point[2]), quotients=1, operations=3)
         return Rays([*ends[1], one], [*(a - b for a, b in zip(*ends, strict=True)), -one])
 
 

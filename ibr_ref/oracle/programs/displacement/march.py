@@ -82,7 +82,7 @@ class March(Vertex, TextureUnit):
         below, above = self.on_ground(point, way), self.on_top(point, way)
         across = [self.do.subtract(a, b) for a, b in zip(below, above, strict=True)]
         # Where h = 1 is computed as C_h + v_h ((1 - C_h)/v_h), the errors of C_h and v_h cancel: four roundings remain.
-        one = self.do.widened(self.do.constant(1.0, point[2]), quotients=1, operations=3)
+        one = self.do.widened(self.do.in_lanes(1.0, point[2]), quotients=1, operations=3)
         top, ground = self.do.named("top", one), self.do.named("ground", self.do.subtract(1.0, one))
         return Rays([*above, top], [*across, self.do.subtract(ground, top)])
 
@@ -180,7 +180,7 @@ class March(Vertex, TextureUnit):
         known = np.flatnonzero(np.isin(linear - 1, self.linear_steps()))
         point = self.position(rays.some(known), (linear[known] - 1) << self.params.binary_steps)
         height = self.height_remembered(*self.sample(patch, point))
-        return self.do.replaced(self.do.constant(0.0, rays.start[0]), known, height)
+        return self.do.replaced(self.do.in_lanes(0.0, rays.start[0]), known, height)
 
     def may_stop(self, step: int) -> bool:
         """Not at h = 1, where nothing is higher; in the volume the first sample may lie anywhere."""
