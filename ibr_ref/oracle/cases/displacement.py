@@ -256,6 +256,17 @@ def loose() -> Case:
     )
 
 
+def sliver() -> Case:
+    """Clipping at the picture's border."""
+    camera = _looking(eye=(0.48, -2.03, 1.19), target=(1.0534, -0.42, 0.02), vertical_fov=32.0)
+    scene = Scene(polygons=[_gentle(height_scale=0.2)], camera=camera, light=Light(position=(1.8, 1.4, 1.5)))
+    about = (
+        "A corner a thirtieth of a pixel beside the picture: faces that are cut there leave a sliver, with poor planes."
+    )
+    params = _params(linear_steps=16, binary_steps=4, shadow_steps=2, shadow_bias=0.02)
+    return _case("sliver", "adversarial", about, scene, params, "gl")
+
+
 def _rim() -> BasePolygon:
     """Low ground with a ridge along its far border and a bank along a side: what is high is at the very edge of the map."""
     heights = _smooth((40, 48), 0.08, 0.31, 0.2)
@@ -289,7 +300,7 @@ CASES: dict[str, Callable[[], Case]] = {
     f"displacement-{make.__name__}": make
     for make in (
         box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing,
-        borders, rim, metropolis,
+        borders, rim, sliver, metropolis,
     )
 }  # fmt: skip
 """By name."""
