@@ -9,9 +9,9 @@ that lives in another package. CONTRIBUTING.md says what each room has.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
 
@@ -58,8 +58,8 @@ class Method:
     parameters for."""
     plain_port: Room | None = None
     """Port, VARIANTS, MUTANTS: what `ibr-ref check --self-test` tries the oracle on."""
-    sample_port: Room | None = None
-    """A class, drawn by `python -m ibr_ref.ports`."""
+    sample_ports: Mapping[str, Room] = field(default_factory=dict, hash=False)
+    """Classes by their languages, drawn by `ibr-ref draw`: of a device, with render(scene, params) of an exported case."""
     command: Room | None = None
     """command, EXAMPLES and goes_with: `ibr-ref render NAME`."""
     demo: Room | None = None
@@ -100,7 +100,7 @@ def _own(
         referee=Room(f"ibr_ref.oracle.referees.{name}:{name.capitalize()}Referee"),
         reads=Room(f"ibr_ref.oracle.referees.reads:{name.upper()}"),
         plain_port=Room(f"ibr_ref.oracle.{plain_port}.{name}"),
-        sample_port=Room(f"ibr_ref.ports.glsl.{name}:Port"),
+        sample_ports={language: Room(f"ibr_ref.ports.{language}.{name}:Port") for language in ("glsl", "wgsl")},
         command=Room(f"ibr_ref.cli.{name}"),
         demo=Room(f"ibr_ref.demo.{name}"),
         bench=Room(f"ibr_ref.bench.{name}"),

@@ -23,7 +23,10 @@ def test_a_device_that_clips_at_the_border_passes_where_that_is_allowed() -> Non
     assert np.nanmax(off) > 1e-4, "no sliver shows"
 
 
-@pytest.mark.parametrize("mutant", [m for m in MUTANTS if m.stage == "raster" and not m.small][::2], ids=lambda mutant: mutant.name)
+BUGS = [m for m in MUTANTS if m.stage == "raster" and not m.small][::2]
+
+
+@pytest.mark.parametrize("mutant", BUGS, ids=lambda mutant: mutant.name)
 def test_bugs_of_the_rasterizer_are_as_visible_as_without(mutant: Mutant) -> None:
     """Where a device without clipping at the border is told to be wrong, so is one with it."""
     arrays = draw(NAME, Policy(), mutant.port)

@@ -155,7 +155,7 @@ class Plane:
         pieces = np.zeros(len(t))
         for triangle, piece in mixer.pieces:
             pieces[piece.points] = np.maximum(pieces[piece.points], piece.off(self.corner[triangle]))
-        return np.asarray(mixer.most(self.error) + np.maximum(barycentric, self.rounding[t]) + pieces)
+        return np.asarray(mixer.most(self.error) + np.maximum.reduce([barycentric, self.rounding[t], pieces]))
 
 
 def _evaluation(triangles: Triangles, a: Floats, device: Device, area: Floats) -> Floats:
