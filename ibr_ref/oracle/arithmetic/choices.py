@@ -114,6 +114,7 @@ class Choices(Decisions):
 
     def between(self, x: Number, low: Any, high: Any) -> Number:
         """What is known to lie between two ends, where that says much more than its own bound; the value stays if it may."""
+        low, high = self.of(low).low, self.of(high).high
         with np.errstate(invalid="ignore"):
             inside = (low <= x.value) & (x.value <= high)
             value = np.where(inside, x.value, 0.5 * (low + high))
