@@ -128,6 +128,11 @@ class Choices(Decisions):
         above, below = (self.rising(f, x) for f in (lambda v: np.maximum(v, least), lambda v: np.minimum(v, -least)))
         return self.where(up, above, below)
 
+    def settled(self, x: Any, *others: Any) -> Number:
+        """With the symbols that others have, the rest in its error: what a loop carries on, or it drags on all of them."""
+        known = {name for other in others for name in self.of(other).slopes}
+        return self.of(x).absorbed(tuple(known))
+
     def in_lanes(self, x: Any, like: Any) -> Number:
         """A number of the whole case for each row of `like`: what is decided of it is decided lane by lane, both ways."""
         x, like = self.of(x), self.of(like)

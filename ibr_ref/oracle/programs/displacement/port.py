@@ -32,7 +32,9 @@ class Port(Shade, Resolve, Raster):
         """Raises ValueError for a search that has no program."""
         from ibr_ref.oracle.programs.displacement.searches import searching  # here: searches are ports
 
-        return super().__new__(searching(cls, params.method))
+        kind: Any = searching(cls, params.method)  # type: ignore[arg-type]  # a class, which can be hashed
+        found: Self = super().__new__(kind)
+        return found
 
     def render(self) -> dict[str, NDArray[np.generic]]:
         """All stage arrays of the contract but the margins, "color" (H, W, 3) and "depth" (H, W)."""

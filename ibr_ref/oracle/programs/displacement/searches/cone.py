@@ -51,7 +51,7 @@ class Cone(Descent):
 
     def stepped(self, patch: Patch, ratios: Floats, rays: Rays, speed: Floats, depth: Floats) -> Floats:
         """After one step: d + c (D - d) / (m + c)."""
-        depth = self.do.named("d", depth)
+        depth = self.do.named("d", self.do.settled(depth, *rays.start, *rays.way))
         u, v = self.below(rays, depth)
         with self.do.one_place():
             height, ratio = self.height_at(patch, u, v), self.fetch(ratios, u, v, patch.repeat)
