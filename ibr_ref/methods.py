@@ -108,9 +108,11 @@ def _own(
     )
 
 
+_JUDGED_SEARCHES = ("protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone")
+
 # fmt: off
 _METHODS = {method.name: method for method in (
-    _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", ("protruded",)), (), "faults"),
+    _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", _JUDGED_SEARCHES), (), "faults"),
     _own("splatting", 2, "Splatting of depth images", "Lee & Park 2006", ("shape", ("square", "disc")), ("normals",)),
     _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", ("warp", "direct")), ("maps",)),
 )}
