@@ -64,6 +64,10 @@ class Method:
     """command, EXAMPLES and goes_with: `ibr-ref render NAME`."""
     demo: Room | None = None
     """SIZES and NOTE (words of the table), PICTURES (how many) and `pictures()`, of `demo.picture.Picture`."""
+    sweep: Room | None = None
+    """`sweep.rooms.Room`: what is measured, and how."""
+    sweep_command: Room | None = None
+    """command, EXAMPLES and goes_with: `ibr-ref sweep NAME`."""
     bench: Room | None = None
     """`measured(repeat, msr)`, and READS_MSR."""
     reproduction: Room | None = None
@@ -103,6 +107,8 @@ def _own(
         sample_ports={language: Room(f"ibr_ref.ports.{language}.{name}:Port") for language in ("glsl", "wgsl")},
         command=Room(f"ibr_ref.cli.{name}"),
         demo=Room(f"ibr_ref.demo.{name}"),
+        sweep=Room(f"ibr_ref.sweep.{name}"),
+        sweep_command=Room(f"ibr_ref.cli.sweeps.{name}"),
         bench=Room(f"ibr_ref.bench.{name}"),
         reproduction=Room(f"ibr_ref.reproduce.{name}:REPRODUCTION"),
     )

@@ -32,6 +32,10 @@ render_app = typer.Typer(no_args_is_help=True, help="Render your own input with 
 for _name, _room in ((each.name, each.command.open()) for each in methods.records() if each.command is not None):
     render_app.command(_name, cls=Command, epilog=_room.EXAMPLES)(_room.command)
 app.add_typer(render_app, name="render")
+sweep_app = typer.Typer(no_args_is_help=True, help="Which parameters are good enough: all combinations, measured.")
+for _name, _room in ((m.name, m.sweep_command.open()) for m in methods.records() if m.sweep_command is not None):
+    sweep_app.command(_name, cls=Command, epilog=_room.EXAMPLES)(_room.command)
+app.add_typer(sweep_app, name="sweep")
 app.command("demo", cls=Command, epilog=demo.EXAMPLES)(demo.command)
 app.command("method", cls=Command, epilog=method.EXAMPLES)(method.command)
 app.command("export", cls=Command, epilog=export.EXAMPLES)(export.command)

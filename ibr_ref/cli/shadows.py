@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import depth_set_options, emptiness, options, own_case
+from ibr_ref.cli import depth_set_options, emptiness, options, own_case, shadows_several, shadows_stage
 from ibr_ref.cli.command import given
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
 from ibr_ref.methods import named
@@ -18,7 +18,6 @@ from ibr_ref.progress import progress
 if TYPE_CHECKING:
     from ibr_ref.io import Frame
     from ibr_ref.progress import Step
-    from ibr_ref.scene import Mesh
     from ibr_ref.shadows import Maps, Params, Scene, SoftParams
 
 EXAMPLES = """
@@ -29,6 +28,9 @@ Examples:
     ibr-ref render shadows --caster cow.obj --samples 9 --offset 0.3,-0.2 --out cow.png
 
     ibr-ref render shadows --light 2,1,4 --light-size 0.3,0.1 --samples 9 --out horse.png
+
+    ibr-ref render shadows --caster a.obj --offset=-0.5,0 --caster b.obj --offset 0.5,0.2 --light=-1,-1.2,5 --light 2,1,4
+        --light-power 0.6 --samples 5 --out two.png
 
     ibr-ref render shadows --caster cow.obj --method pcss --light-size 0.3 --report --out cow.png
 
@@ -82,46 +84,21 @@ class Controls(StrEnum):
     identity = "identity"
 
 
-class Up(StrEnum):
-    """Axis of the mesh that points up."""
-
-    y = "y"
-    z = "z"
-
-
 def command(
     context: typer.Context,
     out: options.Out,
-    caster: Annotated[
-        Path | None, typer.Option(help="The mesh that moves: OBJ, PLY, STL, glTF, Bézier patches. Without: a horse.")
+    caster: shadows_stage.Casters = None,
+    up: Annotated[
+        shadows_stage.Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")
     ] = None,
-    up: Annotated[Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")] = None,
-    offset: Annotated[
-        options.Pair,
-        typer.Option(parser=options.pair, metavar="X,Y", help="Where it stands, -0.6 to 0.6 each."),
-    ] = options.Pair(0, 0),
+    offset: shadows_stage.Offsets = None,
     samples: Annotated[
         int, typer.Option(parser=options.whole, help="Samples of the light: 1 (a hard shadow), 5 or 9.")
     ] = 1,
-    light: Annotated[
-        options.Vector | None,
-        typer.Option(
-            parser=options.vector, metavar="X,Y,Z", help="Where the light is; its maps fit. Without: -1,-1.2,5."
-        ),
-    ] = None,
-    light_target: Annotated[
-        options.Vector | None,
-        typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point that the light looks at. Without: 0,0,0."),
-    ] = None,
-    light_size: Annotated[
-        options.Pair,
-        typer.Option(
-            parser=options.one_or_two,
-            metavar="A[,B]",
-            help="Half the side of the light, or half of both, along x and y, for more than one sample; the mesh's largest "
-            "extent is 1.",
-        ),
-    ] = options.Pair(0.12, 0.12),
+    light: shadows_stage.Lights = None,
+    light_target: shadows_stage.LightTargets = None,
+    light_size: shadows_stage.LightSizes = None,
+    light_power: shadows_stage.LightPowers = None,
     method: Annotated[
         Method,
         typer.Option(
@@ -171,22 +148,21 @@ def command(
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
     case: own_case.Folder = None,
 ) -> None:
-    """Shadows by image warping (Kang & Ihm 2002) of a mesh that moves over a floor with steps."""
+    """Shadows by image warping (Kang & Ihm 2002) of meshes that move over a floor with steps, under one light or several."""
     with progress(4) as step:
         step("reading the mesh")
-        from ibr_ref import io, models, shadows
+        from ibr_ref import io, shadows
 
         io.check_image_writable(out, bits)
         own_case.check_writable(case)
         for path in (stages, None if maps is None or _kept(maps) else maps):
             if path is not None:
                 io.check_writable(path)
-        scene = models.shadow_stage(
-            read_caster(caster, up),
-            offset=offset,
-            light_size=light_size,
-            light_position=light,
-            light_target=light_target,
+        ensemble = shadows_stage.stage(
+            caster,
+            up,
+            offset,
+            shadows_stage.stage_lights(light, light_target, light_size, light_power),
             eye=eye,
             target=target,
             width=size.width,
@@ -194,10 +170,15 @@ def command(
             near=near,
             far=far,
         )
+        scene = ensemble.scene(0, 0)
+        prepared, params, keep = None, None, stages is not None
+        several = len(ensemble.pairs) > 1 or bool(light_power)
+        if several:
+            shadows_several.check_goes_with(ensemble, method.value, method.soft, maps, case)
         if method.soft:
             step("rendering")
             soft = shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples)
-            frame, lines = _soft_frame(scene, soft, stages is not None, report)
+            frame, lines = _soft_frame(scene, soft, keep, report)
         else:
             fields: dict[str, Any] = {
                 "map_size": map_size,
@@ -212,9 +193,12 @@ def command(
             }
             loaded = _loaded(maps, fields, controls, given(context), step)
             params = shadows.Params(**fields)
-            prepared = loaded or (_prepared(scene, params, controls, maps, step) if method is Method.warp else None)
-            step("rendering")
-            frame, lines = _frame(scene, params, prepared, stages is not None, report)
+            if several:
+                frame, lines = shadows_several.drawn(ensemble, params, controls.value, keep, report, step)
+            else:
+                prepared = loaded or (_prepared(scene, params, controls, maps, step) if method is Method.warp else None)
+                step("rendering")
+                frame, lines = _frame(scene, params, prepared, keep, report)
             poor = None if prepared is None else _poor(prepared)
             if poor:
                 typer.echo(poor, err=True)
@@ -226,10 +210,10 @@ def command(
         frame.save(out, bits)
     for line in lines:
         typer.echo(line)
-    emptiness.say(frame, lambda: shadows.culled(scene))
-    if not method.soft:
+    emptiness.say(frame, lambda: shadows.culled(ensemble))
+    if params is not None:
         own_case.write(case, scene, params, **({} if prepared is None else {"maps": prepared}))
-        emptiness.say_cut(shadows.cut_by_light(scene, params))
+        shadows_several.say_cut(ensemble, params)
 
 
 def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
@@ -255,13 +239,6 @@ def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> t
 
     frame = shadows.render_soft(scene, params, stages=keep or report)
     return frame, [soft_report_line(scene, frame)] if report else []
-
-
-def read_caster(path: Path | None, up: Up | None) -> Mesh:
-    """The caster with z up; without a path the horse."""
-    from ibr_ref import io, models
-
-    return models.horse() if path is None else io.read_upright(path, None if up is None else up.value)
 
 
 def _kept(path: Path) -> bool:
@@ -309,8 +286,8 @@ def goes_with() -> dict[str, Beside]:
         return Beside(f"others do not read {name}", {"method": READ_BY[name]})
 
     return {
-        **always("out", "bits", "caster", "offset", "light", "light_target", "method", "eye", "target", "near", "far"),
-        **always("size", "report", "stages", "depth_set"),
+        **always("out", "bits", "caster", "offset", "light", "light_target", "light_power", "method", "eye"),
+        **always("target", "near", "far", "size", "report", "stages", "depth_set"),
         "case": Beside(own_case.WHY, {"method": named("shadows").judged[1]}),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),

@@ -49,6 +49,11 @@ def rules(command: str) -> dict[str, Beside]:
 def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
     return {
         **{f"render {m.name}": m.command.open().goes_with for m in methods.records() if m.command is not None},
+        **{
+            f"sweep {m.name}": m.sweep_command.open().goes_with
+            for m in methods.records()
+            if m.sweep_command is not None
+        },
         "export": _export,
         "check": _check,
         "hunt": lambda: always("port", "method", "seconds", "seed", "out", "device"),
