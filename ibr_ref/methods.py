@@ -61,7 +61,9 @@ class Method:
     sample_port: Room | None = None
     """A class, drawn by `python -m ibr_ref.ports`."""
     command: Room | None = None
-    """command, EXAMPLES and goes_with: `ibr-ref render NAME`."""
+    """command, read, EXAMPLES and goes_with: `ibr-ref render NAME`."""
+    viewable: Room | None = None
+    """`viewer.room.Viewable`: `ibr-ref view`."""
     demo: Room | None = None
     """SIZES and NOTE (words of the table), PICTURES (how many) and `pictures()`, of `demo.picture.Picture`."""
     bench: Room | None = None
@@ -102,6 +104,7 @@ def _own(
         plain_port=Room(f"ibr_ref.oracle.{plain_port}.{name}"),
         sample_port=Room(f"ibr_ref.ports.glsl.{name}:Port"),
         command=Room(f"ibr_ref.cli.{name}"),
+        viewable=Room(f"ibr_ref.viewer.{name}:VIEWABLE"),
         demo=Room(f"ibr_ref.demo.{name}"),
         bench=Room(f"ibr_ref.bench.{name}"),
         reproduction=Room(f"ibr_ref.reproduce.{name}:REPRODUCTION"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,13 +12,13 @@ import typer
 
 from ibr_ref.cli import depth_set_options, emptiness, options, own_case
 from ibr_ref.cli.command import given
+from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
 from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from ibr_ref.io import Frame
-    from ibr_ref.progress import Step
     from ibr_ref.scene import Mesh
     from ibr_ref.shadows import Maps, Params, Scene, SoftParams
 
@@ -89,9 +90,8 @@ class Up(StrEnum):
     z = "z"
 
 
-def command(
+def read(
     context: typer.Context,
-    out: options.Out,
     caster: Annotated[
         Path | None, typer.Option(help="The mesh that moves: OBJ, PLY, STL, glTF, Bézier patches. Without: a horse.")
     ] = None,
@@ -160,6 +160,53 @@ def command(
     size: Annotated[
         options.Size, typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture.")
     ] = options.Size(640, 480),
+    *,
+    within: Callable[[str, int, int], None] | None = None,
+) -> Described:
+    """What the options describe, and the maps; within: told how far these are.
+
+    Raises ValueError and OSError for what makes no scene.
+    """
+    from ibr_ref import io, models, shadows
+
+    if maps is not None and not _kept(maps):
+        io.check_writable(maps)
+    scene = models.shadow_stage(
+        read_caster(caster, up),
+        offset=offset,
+        light_size=light_size,
+        light_position=light,
+        light_target=light_target,
+        eye=eye,
+        target=target,
+        width=size.width,
+        height=size.height,
+        near=near,
+        far=far,
+    )
+    if method.soft:
+        return Described(scene, shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples), {})
+    fields: dict[str, Any] = {
+        "map_size": map_size,
+        "map_samples": map_samples,
+        "rows": rows,
+        "columns": columns,
+        "policy": policy.value,
+        "interpolation": interpolation.value,
+        "content": content.value,
+        "light_samples": samples,
+        "method": method.value,
+    }
+    loaded = _loaded(maps, fields, controls, given(context))
+    params = shadows.Params(**fields)
+    if method is not Method.warp:
+        return Described(scene, params, {})
+    return Described(scene, params, {"maps": loaded or _prepared(scene, params, controls, maps, within)})
+
+
+@beside(read)
+def command(
+    out: options.Out,
     report: Annotated[
         bool,
         typer.Option(
@@ -170,65 +217,38 @@ def command(
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
     case: own_case.Folder = None,
+    **described: Any,
 ) -> None:
     """Shadows by image warping (Kang & Ihm 2002) of a mesh that moves over a floor with steps."""
-    with progress(4) as step:
-        step("reading the mesh")
-        from ibr_ref import io, models, shadows
+    with progress(3) as step:
+        step("reading the mesh, preparing maps")
+        from ibr_ref import io, shadows
 
         io.check_image_writable(out, bits)
         own_case.check_writable(case)
-        for path in (stages, None if maps is None or _kept(maps) else maps):
-            if path is not None:
-                io.check_writable(path)
-        scene = models.shadow_stage(
-            read_caster(caster, up),
-            offset=offset,
-            light_size=light_size,
-            light_position=light,
-            light_target=light_target,
-            eye=eye,
-            target=target,
-            width=size.width,
-            height=size.height,
-            near=near,
-            far=far,
-        )
-        if method.soft:
-            step("rendering")
-            soft = shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples)
-            frame, lines = _soft_frame(scene, soft, stages is not None, report)
+        if stages is not None:
+            io.check_writable(stages)
+        scene, params, inputs, _ = read(**described, within=step.within)
+        soft = isinstance(params, shadows.SoftParams)
+        step("rendering")
+        if soft:
+            frame, lines = _soft_frame(scene, params, stages is not None, report)
         else:
-            fields: dict[str, Any] = {
-                "map_size": map_size,
-                "map_samples": map_samples,
-                "rows": rows,
-                "columns": columns,
-                "policy": policy.value,
-                "interpolation": interpolation.value,
-                "content": content.value,
-                "light_samples": samples,
-                "method": method.value,
-            }
-            loaded = _loaded(maps, fields, controls, given(context), step)
-            params = shadows.Params(**fields)
-            prepared = loaded or (_prepared(scene, params, controls, maps, step) if method is Method.warp else None)
-            step("rendering")
-            frame, lines = _frame(scene, params, prepared, stages is not None, report)
-            poor = None if prepared is None else _poor(prepared)
-            if poor:
-                typer.echo(poor, err=True)
+            frame, lines = _frame(scene, params, inputs.get("maps"), stages is not None, report)
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
         if depth_set is not None:
             io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
         frame.save(out, bits)
+    poor = _poor(inputs["maps"]) if inputs else None
+    if poor:
+        typer.echo(poor, err=True)
     for line in lines:
         typer.echo(line)
     emptiness.say(frame, lambda: shadows.culled(scene))
-    if not method.soft:
-        own_case.write(case, scene, params, **({} if prepared is None else {"maps": prepared}))
+    if not soft:
+        own_case.write(case, scene, params, **inputs)
         emptiness.say_cut(shadows.cut_by_light(scene, params))
 
 
@@ -271,13 +291,12 @@ def _kept(path: Path) -> bool:
     return os.path.exists(path) and not is_stream(path)  # Path.exists raises for names that are too long
 
 
-def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named: set[str], step: Step) -> Maps | None:
+def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named: set[str]) -> Maps | None:
     """Maps from the file if it is there. Fields that were not named become the file's; those that were must be."""
     from ibr_ref import shadows
 
     if path is None or not _kept(path):
         return None
-    step("reading the maps")
     maps = shadows.Maps.load(path)
     wanted = {**fields, "controls": controls.value}
     for name, value in {**maps.made_with, "controls": maps.placement}.items():
@@ -288,12 +307,13 @@ def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named
     return maps
 
 
-def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | None, step: Step) -> Maps:
+def _prepared(
+    scene: Scene, params: Params, controls: Controls, path: Path | None, within: Callable[[str, int, int], None] | None
+) -> Maps:
     """Maps made here, and written where a file is named."""
     from ibr_ref import shadows
 
-    step(f"preparing nine maps ({controls.value} controls)")
-    made = shadows.prepare(scene, params, controls=controls.value, progress=step.within)
+    made = shadows.prepare(scene, params, controls=controls.value, progress=within)
     if path is not None:
         made.save(path)
     return made
