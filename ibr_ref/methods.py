@@ -61,7 +61,9 @@ class Method:
     sample_ports: Mapping[str, Room] = field(default_factory=dict, hash=False)
     """Classes by their languages, drawn by `ibr-ref draw`: of a device, with render(scene, params) of an exported case."""
     command: Room | None = None
-    """command, EXAMPLES and goes_with: `ibr-ref render NAME`."""
+    """command, read, EXAMPLES and goes_with: `ibr-ref render NAME`."""
+    viewable: Room | None = None
+    """`viewer.room.Viewable`: `ibr-ref view`."""
     demo: Room | None = None
     """SIZES and NOTE (words of the table), PICTURES (how many) and `pictures()`, of `demo.picture.Picture`."""
     sweep: Room | None = None
@@ -106,6 +108,7 @@ def _own(
         plain_port=Room(f"ibr_ref.oracle.{plain_port}.{name}"),
         sample_ports={language: Room(f"ibr_ref.ports.{language}.{name}:Port") for language in ("glsl", "wgsl")},
         command=Room(f"ibr_ref.cli.{name}"),
+        viewable=Room(f"ibr_ref.viewer.{name}:VIEWABLE"),
         demo=Room(f"ibr_ref.demo.{name}"),
         sweep=Room(f"ibr_ref.sweep.{name}"),
         sweep_command=Room(f"ibr_ref.cli.sweeps.{name}"),

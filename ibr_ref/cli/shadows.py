@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,13 +12,13 @@ import typer
 
 from ibr_ref.cli import depth_set_options, emptiness, options, own_case, shadows_several, shadows_stage
 from ibr_ref.cli.command import given
+from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
 from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from ibr_ref.io import Frame
-    from ibr_ref.progress import Step
     from ibr_ref.shadows import Maps, Params, Scene, SoftParams
 
 EXAMPLES = """
@@ -28,9 +29,6 @@ Examples:
     ibr-ref render shadows --caster cow.obj --samples 9 --offset 0.3,-0.2 --out cow.png
 
     ibr-ref render shadows --light 2,1,4 --light-size 0.3,0.1 --samples 9 --out horse.png
-
-    ibr-ref render shadows --caster a.obj --offset=-0.5,0 --caster b.obj --offset 0.5,0.2 --light=-1,-1.2,5 --light 2,1,4
-        --light-power 0.6 --samples 5 --out two.png
 
     ibr-ref render shadows --caster cow.obj --method pcss --light-size 0.3 --report --out cow.png
 
@@ -84,9 +82,8 @@ class Controls(StrEnum):
     identity = "identity"
 
 
-def command(
+def read(
     context: typer.Context,
-    out: options.Out,
     caster: shadows_stage.Casters = None,
     up: Annotated[
         shadows_stage.Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")
@@ -137,6 +134,60 @@ def command(
     size: Annotated[
         options.Size, typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture.")
     ] = options.Size(640, 480),
+    *,
+    within: Callable[[str, int, int], None] | None = None,
+) -> Described:
+    """What the options describe, and the maps; within: told how far these are. Several casters or lights are an Ensemble.
+
+    Raises ValueError and OSError for what makes no scene.
+    """
+    from ibr_ref import io, shadows
+
+    if maps is not None and not _kept(maps):
+        io.check_writable(maps)
+    ensemble = shadows_stage.stage(
+        caster,
+        up,
+        offset,
+        shadows_stage.stage_lights(light, light_target, light_size, light_power),
+        eye=eye,
+        target=target,
+        width=size.width,
+        height=size.height,
+        near=near,
+        far=far,
+    )
+    several = len(ensemble.pairs) > 1 or bool(light_power)
+    if several:
+        shadows_several.check_goes_with(ensemble, {f"--method {method.value}": method.soft, f"--maps {maps}": maps})
+    alone = ensemble.scene(0, 0)
+    scene = ensemble if several else alone
+    if method.soft:
+        return Described(alone, shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples), {})
+    fields: dict[str, Any] = {
+        "map_size": map_size,
+        "map_samples": map_samples,
+        "rows": rows,
+        "columns": columns,
+        "policy": policy.value,
+        "interpolation": interpolation.value,
+        "content": content.value,
+        "light_samples": samples,
+        "method": method.value,
+    }
+    loaded = _loaded(maps, fields, controls, given(context))
+    params = shadows.Params(**fields)
+    if method is not Method.warp:
+        return Described(scene, params, {})
+    if several:
+        made = shadows.prepare_ensemble(ensemble, params, controls=controls.value, progress=within)
+        return Described(scene, params, {"maps": made})
+    return Described(scene, params, {"maps": loaded or _prepared(alone, params, controls, maps, within)})
+
+
+@beside(read)
+def command(
+    out: options.Out,
     report: Annotated[
         bool,
         typer.Option(
@@ -147,73 +198,44 @@ def command(
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
     case: own_case.Folder = None,
+    **described: Any,
 ) -> None:
     """Shadows by image warping (Kang & Ihm 2002) of meshes that move over a floor with steps, under one light or several."""
-    with progress(4) as step:
-        step("reading the mesh")
+    with progress(3) as step:
+        step("reading the mesh, preparing maps")
         from ibr_ref import io, shadows
 
         io.check_image_writable(out, bits)
         own_case.check_writable(case)
-        for path in (stages, None if maps is None or _kept(maps) else maps):
-            if path is not None:
-                io.check_writable(path)
-        ensemble = shadows_stage.stage(
-            caster,
-            up,
-            offset,
-            shadows_stage.stage_lights(light, light_target, light_size, light_power),
-            eye=eye,
-            target=target,
-            width=size.width,
-            height=size.height,
-            near=near,
-            far=far,
-        )
-        scene = ensemble.scene(0, 0)
-        prepared, params, keep = None, None, stages is not None
-        several = len(ensemble.pairs) > 1 or bool(light_power)
+        if stages is not None:
+            io.check_writable(stages)
+        scene, params, inputs, _ = read(**described, within=step.within)
+        several, soft = isinstance(scene, shadows.Ensemble), isinstance(params, shadows.SoftParams)
         if several:
-            shadows_several.check_goes_with(ensemble, method.value, method.soft, maps, case)
-        if method.soft:
-            step("rendering")
-            soft = shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples)
-            frame, lines = _soft_frame(scene, soft, keep, report)
-        else:
-            fields: dict[str, Any] = {
-                "map_size": map_size,
-                "map_samples": map_samples,
-                "rows": rows,
-                "columns": columns,
-                "policy": policy.value,
-                "interpolation": interpolation.value,
-                "content": content.value,
-                "light_samples": samples,
-                "method": method.value,
-            }
-            loaded = _loaded(maps, fields, controls, given(context), step)
-            params = shadows.Params(**fields)
-            if several:
-                frame, lines = shadows_several.drawn(ensemble, params, controls.value, keep, report, step)
-            else:
-                prepared = loaded or (_prepared(scene, params, controls, maps, step) if method is Method.warp else None)
-                step("rendering")
-                frame, lines = _frame(scene, params, prepared, keep, report)
-            poor = None if prepared is None else _poor(prepared)
-            if poor:
-                typer.echo(poor, err=True)
+            shadows_several.check_goes_with(scene, {f"--case {case}": case})
+        draw = shadows_several.drawn if several else _soft_frame if soft else _frame
+        step("rendering")
+        frame, lines = draw(scene, params, inputs.get("maps"), stages is not None, report)
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
         if depth_set is not None:
             io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
         frame.save(out, bits)
+    if several and inputs:
+        shadows_several.say_poor(scene, inputs["maps"])
+    elif inputs:
+        poor = _poor(inputs["maps"])
+        if poor:
+            typer.echo(poor, err=True)
     for line in lines:
         typer.echo(line)
-    emptiness.say(frame, lambda: shadows.culled(ensemble))
-    if params is not None:
-        own_case.write(case, scene, params, **({} if prepared is None else {"maps": prepared}))
-        shadows_several.say_cut(ensemble, params)
+    emptiness.say(frame, lambda: shadows.culled(scene))
+    if several:
+        shadows_several.say_cut(scene, params)
+    elif not soft:
+        own_case.write(case, scene, params, **inputs)
+        emptiness.say_cut(shadows.cut_by_light(scene, params))
 
 
 def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
@@ -232,7 +254,7 @@ def _poor(maps: Maps) -> str | None:
     return poor_line(maps)
 
 
-def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> tuple[Frame, list[str]]:
+def _soft_frame(scene: Scene, params: SoftParams, maps: None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
     """The frame, and what is reported of it."""
     from ibr_ref import shadows
     from ibr_ref.cli.shadows_report import soft_report_line
@@ -248,13 +270,12 @@ def _kept(path: Path) -> bool:
     return os.path.exists(path) and not is_stream(path)  # Path.exists raises for names that are too long
 
 
-def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named: set[str], step: Step) -> Maps | None:
+def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named: set[str]) -> Maps | None:
     """Maps from the file if it is there. Fields that were not named become the file's; those that were must be."""
     from ibr_ref import shadows
 
     if path is None or not _kept(path):
         return None
-    step("reading the maps")
     maps = shadows.Maps.load(path)
     wanted = {**fields, "controls": controls.value}
     for name, value in {**maps.made_with, "controls": maps.placement}.items():
@@ -265,12 +286,13 @@ def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named
     return maps
 
 
-def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | None, step: Step) -> Maps:
+def _prepared(
+    scene: Scene, params: Params, controls: Controls, path: Path | None, within: Callable[[str, int, int], None] | None
+) -> Maps:
     """Maps made here, and written where a file is named."""
     from ibr_ref import shadows
 
-    step(f"preparing nine maps ({controls.value} controls)")
-    made = shadows.prepare(scene, params, controls=controls.value, progress=step.within)
+    made = shadows.prepare(scene, params, controls=controls.value, progress=within)
     if path is not None:
         made.save(path)
     return made

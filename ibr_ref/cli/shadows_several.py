@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
@@ -13,36 +13,30 @@ from ibr_ref.metrics import iou, soft_difference
 
 if TYPE_CHECKING:
     from ibr_ref.io import Frame
-    from ibr_ref.progress import Step
     from ibr_ref.shadows import Ensemble, Maps, Params
 
 
-def check_goes_with(ensemble: Ensemble, method: str, soft: bool, maps: Path | None, case: Path | None) -> None:
-    """Raise BadParameter for what goes with one caster and one light alone."""
-    refused = [
-        (f"--method {method}", soft, "others soften the shadow of one caster under one light"),
-        (f"--maps {maps}", maps is not None, "the file holds the maps of one caster and one light"),
-        (f"--case {case}", case is not None, "the oracle judges no others"),
-    ]
-    for what, given, why in refused:
-        if given:
-            counts = f"{len(ensemble.casters)} of --caster and {len(ensemble.lights)} of --light"
-            allowed = "beside one of each and without --light-power"
-            raise typer.BadParameter(f"{what}: found beside {counts}, allowed: {allowed} ({why})")
+WHY = {
+    "--method": "others soften the shadow of one caster under one light",
+    "--maps": "the file holds the maps of one caster and one light",
+    "--case": "the oracle judges no others",
+}
+
+
+def check_goes_with(ensemble: Ensemble, given: Mapping[str, object]) -> None:
+    """Raise BadParameter for what goes with one caster and one light alone: options with their values, if given."""
+    for what in (what for what, value in given.items() if value):
+        counts = f"{len(ensemble.casters)} of --caster and {len(ensemble.lights)} of --light"
+        allowed = "beside one of each and without --light-power"
+        raise typer.BadParameter(f"{what}: found beside {counts}, allowed: {allowed} ({WHY[what.split()[0]]})")
 
 
 def drawn(
-    ensemble: Ensemble, params: Params, controls: str, keep: bool, report: bool, step: Step
+    ensemble: Ensemble, params: Params, maps: list[list[Maps]] | None, keep: bool, report: bool
 ) -> tuple[Frame, list[str]]:
-    """The frame, and what is reported of it; where no good maps were found standard error says so."""
+    """The frame, and what is reported of it."""
     from ibr_ref import shadows
 
-    maps = None
-    if params.method == "warp":
-        step(f"preparing {9 * len(ensemble.pairs)} maps ({controls} controls)")
-        maps = shadows.prepare_ensemble(ensemble, params, controls=controls, progress=step.within)
-        _say_poor(ensemble, maps)
-    step("rendering")
     frame = shadows.render_ensemble(ensemble, params, maps=maps, stages=keep or report)
     return frame, _report_lines(ensemble, params, frame, maps) if report else []
 
@@ -56,7 +50,8 @@ def say_cut(ensemble: Ensemble, params: Params) -> None:
         emptiness.say_cut(shadows.cut_by_light(ensemble.scene(*pair), params), ensemble.name_of(*pair))
 
 
-def _say_poor(ensemble: Ensemble, maps: list[list[Maps]]) -> None:
+def say_poor(ensemble: Ensemble, maps: list[list[Maps]]) -> None:
+    """Where no good maps were found standard error says so."""
     from ibr_ref.cli.shadows_report import poor_line
 
     for caster, light in ensemble.pairs:

@@ -70,7 +70,7 @@ class Port:
 
     def _draw(self, frame: PatchFrame, number: int, params: Any) -> _Draw | None:
         """Buffers, textures and code of one polygon; None: no face of it is drawn."""
-        faces = frame.faces(params)
+        faces = frame.faces(params.faces, params.interval)
         if not len(faces):
             return None
         device, polygon, unused = self.device, frame.polygon, np.zeros((1, 1, 3))
