@@ -9,16 +9,25 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import depth_set_options, emptiness, options, own_case, shadows_several, shadows_stage
+from ibr_ref.cli import (
+    depth_set_options,
+    emptiness,
+    options,
+    own_case,
+    pictures,
+    shadows_drawing,
+    shadows_several,
+    shadows_stage,
+)
 from ibr_ref.cli.command import given
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
 from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
-    from ibr_ref.io import Frame
+    from ibr_ref.cli.shadows_drawing import Drawing
     from ibr_ref.progress import Step
-    from ibr_ref.shadows import Maps, Params, Scene, SoftParams
+    from ibr_ref.shadows import Maps, Params, Scene
 
 EXAMPLES = """
 Examples:
@@ -143,21 +152,27 @@ def command(
             "--report", help="Print how far the shadow is from the rendered or traced one, and the maps' memory."
         ),
     ] = False,
+    path: pictures.CameraPath = None,
+    frames: pictures.Frames = 120,
+    video: pictures.Video = None,
+    fps: pictures.Fps = 30.0,
     depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
     case: own_case.Folder = None,
 ) -> None:
     """Shadows by image warping (Kang & Ihm 2002) of meshes that move over a floor with steps, under one light or several."""
+    whole = {"stages": stages, "report": report, "depth_set": depth_set}
+    wanted = pictures.Wanted(out=out, bits=bits, path=path, frames=frames, video=video, fps=fps, fov=40.0, whole=whole)
     with progress(4) as step:
         step("reading the mesh")
         from ibr_ref import io, shadows
 
-        io.check_image_writable(out, bits)
+        wanted.check(size.width, size.height)
         own_case.check_writable(case)
-        for path in (stages, None if maps is None or _kept(maps) else maps):
-            if path is not None:
-                io.check_writable(path)
+        for output in (stages, None if maps is None or _kept(maps) else maps):
+            if output is not None:
+                io.check_writable(output)
         ensemble = shadows_stage.stage(
             caster,
             up,
@@ -170,15 +185,12 @@ def command(
             near=near,
             far=far,
         )
-        scene = ensemble.scene(0, 0)
-        prepared, params, keep = None, None, stages is not None
         several = len(ensemble.pairs) > 1 or bool(light_power)
         if several:
             shadows_several.check_goes_with(ensemble, method.value, method.soft, maps, case)
         if method.soft:
-            step("rendering")
             soft = shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples)
-            frame, lines = _soft_frame(scene, soft, keep, report)
+            drawing: Drawing = shadows_drawing.soft(ensemble, soft, wanted.in_bands)
         else:
             fields: dict[str, Any] = {
                 "map_size": map_size,
@@ -194,51 +206,35 @@ def command(
             loaded = _loaded(maps, fields, controls, given(context), step)
             params = shadows.Params(**fields)
             if several:
-                frame, lines = shadows_several.drawn(ensemble, params, controls.value, keep, report, step)
+                drawing = shadows_several.drawing(ensemble, params, controls.value, step)
             else:
-                prepared = loaded or (_prepared(scene, params, controls, maps, step) if method is Method.warp else None)
-                step("rendering")
-                frame, lines = _frame(scene, params, prepared, keep, report)
-            poor = None if prepared is None else _poor(prepared)
-            if poor:
-                typer.echo(poor, err=True)
-        step("writing")
-        if stages is not None:
-            frame.save_stages(stages)
-        if depth_set is not None:
-            io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
-        frame.save(out, bits)
-    for line in lines:
+                warps = method is Method.warp
+                prepared = loaded or (_prepared(ensemble.scene(0, 0), params, controls, maps, step) if warps else None)
+                drawing = shadows_drawing.one(ensemble, params, prepared)
+        keep = report or stages is not None
+        shown, frame = pictures.draw(
+            wanted,
+            drawing.scene,
+            drawing.params,
+            lambda scene, **rows: drawing.render(scene, keep, **rows),
+            lambda camera: shadows_stage.fitted(ensemble, camera, near, far),
+            step,
+        )
+        if frame is not None:
+            step("writing")
+            if stages is not None:
+                frame.save_stages(stages)
+            if depth_set is not None:
+                io.write_depth_set(depth_set, [frame.depth_image(ensemble.camera)], bits=bits)
+            frame.save(out, bits)
+    for line in drawing.report(frame) if frame is not None and report else []:
         typer.echo(line)
-    emptiness.say(frame, lambda: shadows.culled(ensemble))
-    if params is not None:
-        own_case.write(case, scene, params, **({} if prepared is None else {"maps": prepared}))
-        shadows_several.say_cut(ensemble, params)
-
-
-def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
-    """The frame, and what is reported of it."""
-    from ibr_ref import shadows
-    from ibr_ref.cli.shadows_report import report_lines
-
-    frame = shadows.render(scene, params, maps=maps, stages=keep or report)
-    return frame, report_lines(scene, params, frame, maps) if report else []
-
-
-def _poor(maps: Maps) -> str | None:
-    """A line for standard error."""
-    from ibr_ref.cli.shadows_report import poor_line
-
-    return poor_line(maps)
-
-
-def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> tuple[Frame, list[str]]:
-    """The frame, and what is reported of it."""
-    from ibr_ref import shadows
-    from ibr_ref.cli.shadows_report import soft_report_line
-
-    frame = shadows.render_soft(scene, params, stages=keep or report)
-    return frame, [soft_report_line(scene, frame)] if report else []
+    emptiness.say(shown, lambda: shadows.culled(ensemble))
+    if not method.soft:
+        own_case.write(
+            case, ensemble.scene(0, 0), drawing.params, **({} if drawing.maps is None else {"maps": drawing.maps})
+        )
+        shadows_several.say_cut(ensemble, drawing.params)
 
 
 def _kept(path: Path) -> bool:
@@ -286,8 +282,9 @@ def goes_with() -> dict[str, Beside]:
         return Beside(f"others do not read {name}", {"method": READ_BY[name]})
 
     return {
-        **always("out", "bits", "caster", "offset", "light", "light_target", "light_power", "method", "eye"),
-        **always("target", "near", "far", "size", "report", "stages", "depth_set"),
+        **pictures.goes_with("eye", "target"),
+        **always("out", "bits", "caster", "offset", "light", "light_target", "light_power", "method"),
+        **always("near", "far", "size", "report", "stages", "depth_set"),
         "case": Beside(own_case.WHY, {"method": named("shadows").judged[1]}),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),

@@ -1,4 +1,4 @@
-"""`ibr-ref render shadows` with several casters or lights: the frame, what is reported of it, and what is refused."""
+"""`ibr-ref render shadows` with several casters or lights: how they are drawn, what is reported, and what is refused."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import typer
 from ibr_ref.metrics import iou, soft_difference
 
 if TYPE_CHECKING:
+    from ibr_ref.cli.shadows_drawing import Drawing
     from ibr_ref.io import Frame
     from ibr_ref.progress import Step
     from ibr_ref.shadows import Ensemble, Maps, Params
@@ -31,20 +32,22 @@ def check_goes_with(ensemble: Ensemble, method: str, soft: bool, maps: Path | No
             raise typer.BadParameter(f"{what}: found beside {counts}, allowed: {allowed} ({why})")
 
 
-def drawn(
-    ensemble: Ensemble, params: Params, controls: str, keep: bool, report: bool, step: Step
-) -> tuple[Frame, list[str]]:
-    """The frame, and what is reported of it; where no good maps were found standard error says so."""
+def drawing(ensemble: Ensemble, params: Params, controls: str, step: Step) -> Drawing:
+    """All casters under all lights; where no good maps were found standard error says so."""
     from ibr_ref import shadows
+    from ibr_ref.cli.shadows_drawing import Drawing
 
     maps = None
     if params.method == "warp":
         step(f"preparing {9 * len(ensemble.pairs)} maps ({controls} controls)")
         maps = shadows.prepare_ensemble(ensemble, params, controls=controls, progress=step.within)
         _say_poor(ensemble, maps)
-    step("rendering")
-    frame = shadows.render_ensemble(ensemble, params, maps=maps, stages=keep or report)
-    return frame, _report_lines(ensemble, params, frame, maps) if report else []
+    return Drawing(
+        scene=ensemble,
+        params=params,
+        render=lambda scene, keep, **rows: shadows.render_ensemble(scene, params, maps=maps, stages=keep, **rows),
+        report=lambda frame: _report_lines(ensemble, params, frame, maps),
+    )
 
 
 def say_cut(ensemble: Ensemble, params: Params) -> None:
