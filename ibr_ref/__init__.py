@@ -15,7 +15,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ibr_ref import displacement, io, metrics, models, oracle, shadows, splatting, sweep
+    from ibr_ref import displacement, io, metrics, models, oracle, shadows, splatting
     from ibr_ref.scene import BasePolygon, Camera, DepthImage, DepthSet, Light, Mesh
 
 __version__ = "0.1.0"
@@ -34,7 +34,6 @@ __all__ = [
     "oracle",
     "shadows",
     "splatting",
-    "sweep",
 ]
 
 _MODULES = ("displacement", "io", "metrics", "models", "oracle", "shadows", "splatting", "sweep")
