@@ -14,7 +14,7 @@ from typing import Annotated
 import typer
 
 from ibr_ref import methods
-from ibr_ref.cli import bench, check, demo, export, hunt, method, reproduce
+from ibr_ref.cli import bench, check, demo, draw, export, hunt, method, reproduce
 from ibr_ref.cli.command import Command
 
 _BROKEN_PIPE = 141
@@ -39,6 +39,7 @@ app.add_typer(sweep_app, name="sweep")
 app.command("demo", cls=Command, epilog=demo.EXAMPLES)(demo.command)
 app.command("method", cls=Command, epilog=method.EXAMPLES)(method.command)
 app.command("export", cls=Command, epilog=export.EXAMPLES)(export.command)
+app.command("draw", cls=Command, epilog=draw.EXAMPLES)(draw.command)
 app.command("check", cls=Command, epilog=check.EXAMPLES)(check.command)
 app.command("hunt", cls=Command, epilog=hunt.EXAMPLES)(hunt.command)
 app.command("bench", cls=Command, epilog=bench.EXAMPLES)(bench.command)

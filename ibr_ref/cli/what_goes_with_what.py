@@ -57,6 +57,7 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
         "export": _export,
         "check": _check,
         "hunt": lambda: always("port", "method", "seconds", "seed", "out", "device"),
+        "draw": lambda: always("case", "folder", "with_", "adapter"),
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),

@@ -16,13 +16,13 @@ class Bugs:
         self.mutants: list[Mutant] = []
 
     def add(
-        self, name: str, *, small: bool = False, survives: str = "", hidden: str = ""
+        self, name: str, *, small: bool = False, survives: str = "", hidden: str = "", only: tuple[str, ...] = ()
     ) -> Callable[[type[Port]], type[Port]]:
         """Enter the decorated port; the options are those of `Mutant`."""
 
         def enter(port: type[Port]) -> type[Port]:
             fault = " ".join((port.__doc__ or "").split())
-            self.mutants.append(Mutant(name, fault, self.stage, port, small=small, survives=survives, hidden=hidden))
+            self.mutants.append(Mutant(name, fault, self.stage, port, small, survives, hidden, only))
             return port
 
         return enter

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
-from ibr_ref.scene.checks import reject
 
 Floats = Any
 """Numbers of the arithmetic that the program runs on: arrays of a device's, or `Number`s with bounds."""
@@ -49,14 +48,11 @@ class Case:
 
     limits: ClassVar[dict[str, Any]] = {}
     """Numbers of the device that a fault takes for others."""
+    floor: ClassVar[float] = 0.0
+    """h of the volume's bottom."""
 
     def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
-        """A displacement scene and its parameters; `inputs` is not used: the scene holds everything.
-
-        Raises ValueError for the systems that the paper compares with: they are no part of this port.
-        """
-        if params.method != "protruded":
-            raise reject("method", params.method, "protruded")
+        """A displacement scene and its parameters; `inputs` is not used: the scene holds everything."""
         self.scene = scene
         self.params = params
         self.do: Any
@@ -80,6 +76,10 @@ class Case:
     def upload(self, vector: Floats) -> Vector:
         """A vector in a uniform buffer."""
         return list(self.do.number(vector))
+
+    def above_floor(self, h: Floats) -> Floats:
+        """Heights above the volume's bottom."""
+        return self.do.subtract(h, self.floor) if self.floor else h
 
     def cross(self, a: Vector, b: Vector) -> Vector:
         """The cross product."""

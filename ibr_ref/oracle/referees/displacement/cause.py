@@ -46,7 +46,7 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
         return None
     suspects, tried = Suspects(case, device, handed, wrong), 0
     for stages in (wrong.stage,), _hidden_in(wrong, handed):
-        left = [m for m in MUTANTS if m.stage in stages]
+        left = [m for m in MUTANTS if m.stage in stages and m.applies(case.system)]
         for number, sample in enumerate((*suspects.samples(), None)):
             survivors: list[Mutant] = []
             for mutant in left:
