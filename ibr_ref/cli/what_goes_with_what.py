@@ -52,12 +52,21 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
         **{f"render {m.name}": m.command.open().goes_with for m in methods.records() if m.command is not None},
         "export": _export,
         "check": _check,
-        "hunt": lambda: always("port", "method", "seconds", "seed", "out", "device"),
+        "hunt": _hunt,
         **{f"view {name}": partial(view.goes_with, name) for name in view.commands()},
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),
         "reproduce": lambda: always("paper", "out", "again"),
+    }
+
+
+def _hunt() -> dict[str, Beside]:
+    return {
+        **always("method", "seconds", "seed", "out", "device"),
+        "port": Beside("there is one port", {"page": ABSENT}),
+        "serve": Beside("it says how a command is told", {"port": GIVEN}),
+        "page": Beside("there is one port", {"port": ABSENT}),
     }
 
 
