@@ -13,6 +13,7 @@ import typer
 from ibr_ref import methods
 from ibr_ref.cli import json_output
 from ibr_ref.cli.judging import Finding, Judging, worst
+from ibr_ref.cli.tables import counted
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.progress import progress
 
@@ -210,7 +211,7 @@ def _table(findings: Sequence[Finding], jobs: int) -> list[str]:
     counts = [finding.verdict.outcome for finding in findings]
     said = ", ".join(f"{counts.count(outcome)} {outcome}" for outcome in dict.fromkeys(sorted(counts, key=str)))
     left = jobs - len(findings)
-    return [*lines, f"{len(findings)} cases: {said}" + (f"; {left} not tried." if left else ".")]
+    return [*lines, f"{counted(len(findings), 'case')}: {said}" + (f"; {left} not tried." if left else ".")]
 
 
 def _said(finding: Finding) -> str:
@@ -223,6 +224,8 @@ def _said(finding: Finding) -> str:
     if first is not None:
         blamed = ", ".join(first.blamed)
         how = f"first wrong in {first.stage}: {first.wrong:,} of {first.elements:,} elements, {blamed} ({how})"
+        if verdict.causes:
+            how += f", explained by {' or '.join(cause.name for cause in verdict.causes)}"
     elif verdict.biases:
         how = f"first wrong in {verdict.first_wrong_stage}: {verdict.biases[0].parameter} ({how})"
     return f"{how}, {finding.seconds:.1f} s"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterable
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -14,6 +15,7 @@ import typer
 
 from ibr_ref import methods
 from ibr_ref.cli import options
+from ibr_ref.cli.tables import counted
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.progress import progress
 
@@ -93,7 +95,7 @@ def command(
     started, before = time.monotonic(), len(state.bugs)
     from ibr_ref.testing import Hunt, port_of
 
-    with progress(1) as step:
+    with progress(1) as step, closing(drawer):
         step("hunting")
 
         def told(hunt: Hunt) -> None:
@@ -104,13 +106,12 @@ def command(
             port=partial(port_of, drawer), methods=wanted, device=device, seed=seed, database=folder.place / "examples",
             known=set(state.bugs), rounds=state.rounds, told=told,
         )  # fmt: skip
-        lines = [_line(found, folder.keep(found, drawer, device)) for found in _kept(hunt, seconds, folder)]
-    drawer.close()
-    for line in lines:
-        typer.echo(line)
+        for found in _kept(hunt, seconds, folder):
+            typer.echo(_line(found, folder.keep(found, drawer, device)))
+    new = len(hunt.known) - before
     typer.echo(
-        f"{hunt.tried} cases in {time.monotonic() - started:.0f} s (seed {seed}, rounds {state.rounds} to {hunt.rounds}): "
-        f"{len(hunt.known) - before} new bugs, {before} known from before."
+        f"{counted(hunt.tried, 'case')} in {time.monotonic() - started:.0f} s (seed {seed}, rounds {state.rounds} to "
+        f"{hunt.rounds}): {counted(new, 'new bug')}, {before} known from before."
     )
     raise typer.Exit(1 if hunt.known else 0)
 
@@ -226,5 +227,6 @@ class _Folder:
 
 
 def _line(found: Found, verdict: str) -> str:
-    camera = found.case.scene.camera
-    return f"{verdict} {camera.width} x {camera.height} pixels, after {found.after} cases."
+    camera, causes = found.case.scene.camera, found.bug.causes
+    why = f" Explained by {' or '.join(causes)}." if causes else ""
+    return f"{verdict}{why} {camera.width} x {camera.height} pixels, after {counted(found.after, 'case')}."

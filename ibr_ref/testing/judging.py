@@ -42,7 +42,7 @@ class Bug(NamedTuple):
     def name(self) -> str:
         """As a folder may be called."""
         words = f"{self.method}-{self.array if self.array.startswith(self.stage) else f'{self.stage}-{self.array}'}"
-        words = "-".join([words, *self.causes[:1]])
+        words = "-".join([words, *self.causes[:1], *["or-another"][: len(self.causes[1:])]])
         return "".join(c if c.isalnum() or c in "._-" else "-" for c in words)[:64].rstrip("-")
 
     @property

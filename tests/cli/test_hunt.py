@@ -39,7 +39,7 @@ def test_a_bug_is_a_case_from_then_on(run: Run, port: str, tmp_path: Path, one_t
     code, said, err = run("hunt", "--port", port, "--method", "displacement", "--seconds", 2, "--out", out)
     assert code == 1, err
     assert "FAIL: displacement-march.steep, first wrong in stage march" in said
-    assert "1 new bugs, 0 known from before." in said
+    assert "1 new bug, 0 known from before." in said
     assert json.loads((out / "hunt.json").read_text())["bugs"] == [
         {"method": "displacement", "stage": "march", "array": "march.steep", "causes": []}
     ]

@@ -138,6 +138,8 @@ def test_a_port_that_does_not_draw_and_one_whose_files_are_unusable() -> None:
     )
     assert Bug("displacement", "port", "exit code 3").name == "displacement-port-exit-code-3"
     assert STEEP.name == "displacement-march.steep"
+    assert STEEP._replace(causes=("a",)).name == "displacement-march.steep-a"
+    assert STEEP._replace(causes=("a", "b", "c")).name == "displacement-march.steep-a-or-another"
 
 
 def test_a_picture_alone_is_judged_too() -> None:
