@@ -86,7 +86,9 @@ def main() -> None:
     except BrokenPipeError:  # whoever reads standard output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # or Python complains of what it could not flush
         code = _BROKEN_PIPE
-    except (ValueError, OSError, MemoryError) as error:
+    except MemoryError as error:
+        code = _fail(f"out of memory: {error}" if str(error) else "out of memory")
+    except (ValueError, OSError) as error:
         code = _fail(str(error) or type(error).__name__)
     except (KeyboardInterrupt, typer.Abort):
         code = CODE

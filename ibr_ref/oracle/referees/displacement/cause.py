@@ -62,6 +62,14 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
     return Explanation(causes=())
 
 
+def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
+    """Whether the bug of that name explains every element of a stage; one that there is not explains none."""
+    if wrong.stage not in STAGES:
+        return False
+    suspects = Suspects(case, device, handed, wrong)
+    return any(suspects.explains(mutant, None) for mutant in MUTANTS if mutant.name == cause)
+
+
 def _named(mutants: Sequence[Mutant]) -> tuple[Cause, ...]:
     return tuple(Cause(name=m.name, says=m.fault) for m in mutants)
 
