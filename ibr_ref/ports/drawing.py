@@ -21,13 +21,16 @@ class Drawer:
     """A sample port on a device."""
 
     name: str
-    """glsl | wgsl | plain."""
+    """glsl | wgsl | webgl | plain."""
     words: str
     """The device, as its driver calls it."""
     declares: Mapping[str, str | int]
     """What `port.json` says."""
     draw: Callable[[Path], Frame]
     """The frame of a case's folder, with all stages. Raises ValueError for what is not ported."""
+
+    close: Callable[[], None] = lambda: None
+    """Gives the device back."""
 
     def into(self, case: Path, folder: Path) -> None:
         """Draw a case, and write all arrays that it has names for beside `port.json`."""
@@ -96,6 +99,15 @@ def _wgsl(adapter: str | None) -> Drawer:
     return Drawer("wgsl", device.words, {"profile": "webgpu"}, _of_given("wgsl", device))
 
 
+def _webgl(adapter: str | None) -> Drawer:
+    """adapter: a browser's command."""
+    from ibr_ref.ports.webgl.browser import Browser
+
+    browser = Browser(adapter)
+    bits = {"subpixel_bits": browser.subpixel_bits} if browser.subpixel_bits >= 4 else {}
+    return Drawer("webgl", browser.words, {"profile": "gl", **bits}, browser.draw, browser.close)
+
+
 def _plain(adapter: str | None) -> Drawer:
     if adapter is not None:
         raise ValueError(f"adapter: found {adapter!r}, allowed: none with plain, which is NumPy")
@@ -119,5 +131,10 @@ def _plainly(folder: Path) -> Frame:
     return Frame(color, depth, arrays)
 
 
-SAMPLES: dict[str, Callable[[str | None], Drawer]] = {"glsl": _glsl, "wgsl": _wgsl, "plain": _plain}
+SAMPLES: dict[str, Callable[[str | None], Drawer]] = {
+    "glsl": _glsl,
+    "wgsl": _wgsl,
+    "webgl": _webgl,
+    "plain": _plain,
+}
 """By name, what opens a device; the argument: which of several. Raise ValueError, one line, where there is none."""
