@@ -76,6 +76,8 @@ def _glsl(adapter: str | None) -> Drawer:
     """adapter: one of Mesa's drivers."""
     if adapter is not None:
         os.environ["MESA_LOADER_DRIVER_OVERRIDE" if adapter == "zink" else "GALLIUM_DRIVER"] = adapter
+    if adapter == "softpipe":  # it says 3.3, and has what the ports need of 4.5
+        os.environ |= {"MESA_GL_VERSION_OVERRIDE": "4.5", "MESA_GLSL_VERSION_OVERRIDE": "450"}
     try:
         from ibr_ref.ports.glsl import gl
 
