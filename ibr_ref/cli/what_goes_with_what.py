@@ -60,6 +60,7 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
         "hunt": _hunt,
         "draw": lambda: always("case", "folder", "with_", "adapter"),
         **{f"view {name}": partial(view.goes_with, name) for name in view.commands()},
+        "conformance": lambda: always("case", "with_", "adapter", "out"),
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),
