@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from ibr_ref import Light, splatting
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.faults.kinds import Mutant, Variant
-from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port, raster
+from ibr_ref.oracle.faults.splatting import MUTANTS, VARIANTS, Port
+from ibr_ref.oracle.programs.splatting import raster
 from ibr_ref.testing.splatting import Drawn as Case
 from ibr_ref.testing.splatting import drawn as cases
 from tests.oracle.ports.splatting_scenes import SCENES

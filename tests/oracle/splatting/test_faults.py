@@ -9,7 +9,7 @@ import pytest
 
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.ports.splatting import MUTANTS, Port
+from ibr_ref.oracle.faults.splatting import MUTANTS, Port
 from ibr_ref.oracle.referees.splatting.normals import Codes, surface
 from tests.oracle.judgements import complaints, first_wrong, picture
 from tests.oracle.splatting.judged import REFEREE, Arrays, case, drawn, image, reference, stages

@@ -7,15 +7,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Bools, Floats
-from ibr_ref.oracle.ports.splatting.atlas import Integers
-from ibr_ref.oracle.ports.splatting.stage import Stage
+from ibr_ref.oracle.programs.splatting.case import Bools, Case, Floats, Ints, Vector
 
 
 class Splats(NamedTuple):
     """What is drawn."""
 
-    vertex: Integers
+    vertex: Ints
     x: Floats
     """Centre, snapped."""
     y: Floats
@@ -27,10 +25,10 @@ class Splats(NamedTuple):
 class Fragments(NamedTuple):
     """Covered pixels, those of earlier splats first."""
 
-    splat: Integers
+    splat: Ints
     """Index into Splats."""
-    row: Integers
-    column: Integers
+    row: Ints
+    column: Ints
 
 
 class Buffers(NamedTuple):
@@ -46,15 +44,17 @@ BATCH = 1 << 16
 """Splats drawn at a time, so that the fragments of wide ones fit into memory."""
 
 
-class Raster(Stage):
+class Raster(Case):
     """The fixed function: coverage is exact, whatever the shaders' arithmetic is."""
 
-    def arrays(self, vertices: dict[str, Any]) -> dict[str, Any]:
+    def raster(self, vertices: dict[str, Any]) -> dict[str, Any]:
         """The stage's arrays but for the margin, which is the reference's own."""
         camera = self.scene.camera
         buffers = self.cleared(camera.height * camera.width)
-        splats = self.splats(vertices)
-        names = self.names(vertices, splats.vertex)
+        window, width, depth = (vertices[f"vertex.{name}"] for name in ("window", "width", "depth"))
+        live = np.flatnonzero((width > 0.0) & np.isfinite(window).all(axis=1))
+        splats = self.splats(live, list(window[live].T), width[live], depth[live])
+        names = self.names(vertices["vertex.source"][:, 0], splats.vertex)
         for first in range(0, len(names), BATCH):
             batch = slice(first, first + BATCH)
             fragments = self.fragments(Splats._make(values[batch] for values in splats))
@@ -68,16 +68,14 @@ class Raster(Stage):
             "raster.overdraw": buffers.overdraw.reshape(shape),
         }
 
-    def splats(self, vertices: dict[str, Any]) -> Splats:
+    def splats(self, vertex: Ints, window: Vector, width: Floats, depth: Floats) -> Splats:
         """Of the points that are not dropped."""
-        window, width, depth = (vertices[f"vertex.{name}"] for name in ("window", "width", "depth"))
-        live = np.flatnonzero((width > 0.0) & np.isfinite(window).all(axis=1))
-        x, y = self.snapped(window[live]).T
-        return Splats(live, x, y, self.size(width[live]), self.stored_depth(depth[live]))
+        x, y = (self.snapped(axis) for axis in window)
+        return Splats(vertex, x, y, self.size(width), self.stored_depth(depth))
 
     def snapped(self, window: Floats) -> Floats:
-        """Centres on the raster of subpixels."""
-        return self.alu.snap(window)
+        """Centres on the raster of subpixels, along an axis."""
+        return self.do.snap(window)
 
     def size(self, width: Floats) -> Floats:
         """The width that is drawn: not snapped."""
@@ -85,13 +83,13 @@ class Raster(Stage):
 
     def stored_depth(self, depth: Floats) -> Floats:
         """As the depth buffer holds it."""
-        return self.alu.depth(depth)
+        return self.do.flat_depth(depth)
+
+    # --- Coverage ----------------------------------------------------------------------------------------------------
 
     def fragments(self, splats: Splats) -> Fragments:
         """All pixels that the splats cover."""
-        camera, half = self.scene.camera, self.half(splats.width)
-        left, right = self.span(splats.x, half, camera.width)
-        top, bottom = self.span_of_rows(splats.y, half, camera.height)
+        (left, right), (top, bottom) = ([end.astype(np.int64) for end in ends] for ends in self.spans(splats))
         columns, rows = np.maximum(right - left, 0), np.maximum(bottom - top, 0)
         splat = np.repeat(np.arange(len(left)), rows * columns)
         step = np.arange(len(splat)) - np.repeat(np.cumsum(rows * columns) - rows * columns, rows * columns)
@@ -102,21 +100,25 @@ class Raster(Stage):
         kept = self.in_disc(splats, fragments)
         return Fragments._make(values[kept] for values in fragments)
 
+    def spans(self, splats: Splats) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+        """Columns and rows of splats, inside the picture."""
+        camera, half = self.scene.camera, self.half(splats.width)
+        return self.span(splats.x, half, camera.width), self.span_of_rows(splats.y, half, camera.height)
+
     def half(self, width: Floats) -> Floats:
         """From the centre to a border."""
         return 0.5 * width
 
     def borders(self, center: Floats, half: Floats) -> tuple[Floats, Floats]:
         """c − w/2 and c + w/2."""
-        return center - half, center + half
+        return self.do.border(center - half), self.do.border(center + half)
 
-    def span(self, center: Floats, half: Floats, count: int) -> tuple[Integers, Integers]:
+    def span(self, center: Floats, half: Floats, count: int) -> tuple[Floats, Floats]:
         """The first column covered and the first that is not any more, inside the picture: [c − w/2, c + w/2)."""
         low, high = self.borders(center, half)
-        first, end = self.first_from(low), self.end_before(high)
-        return np.clip(first, 0, count).astype(np.int64), np.clip(end, 0, count).astype(np.int64)
+        return np.clip(self.first_from(low), 0, count), np.clip(self.end_before(high), 0, count)
 
-    def span_of_rows(self, center: Floats, half: Floats, count: int) -> tuple[Integers, Integers]:
+    def span_of_rows(self, center: Floats, half: Floats, count: int) -> tuple[Floats, Floats]:
         """The same for rows."""
         return self.span(center, half, count)
 
@@ -130,19 +132,22 @@ class Raster(Stage):
 
     def in_disc(self, splats: Splats, fragments: Fragments) -> Bools:
         """dx² + dy² ≤ w²/4."""
-        dx = self.alu.subtract(fragments.column + 0.5, splats.x[fragments.splat])
-        dy = self.alu.subtract(fragments.row + 0.5, splats.y[fragments.splat])
-        return np.asarray(self.alu.dot([dx, dy], [dx, dy]) <= self.squared_radius(splats.width)[fragments.splat])
+        splat, border = fragments.splat, self.do.border
+        dx = self.do.subtract(fragments.column + 0.5, border(splats.x[splat]))
+        dy = self.do.subtract(fragments.row + 0.5, border(splats.y[splat]))
+        return self.do.dot([dx, dy], [dx, dy]) <= self.squared_radius(border(splats.width[splat], 2.0))
 
     def squared_radius(self, width: Floats) -> Floats:
         """w²/4."""
-        return self.alu.multiply(0.25, self.alu.multiply(width, width))
+        return self.do.multiply(0.25, self.do.multiply(width, width))
+
+    # --- Depth test --------------------------------------------------------------------------------------------------
 
     def cleared(self, count: int) -> Buffers:
         """The buffers of so many pixels before the first splat."""
         return Buffers(np.full(count, -1, np.int32), np.ones(count), np.zeros(count, np.int32))
 
-    def draw(self, buffers: Buffers, pixel: Integers, name: Integers, depth: Floats) -> None:
+    def draw(self, buffers: Buffers, pixel: Ints, name: Ints, depth: Floats) -> None:
         """Test fragments and store them: the n-th fragments of all pixels together."""
         order = np.argsort(pixel, kind="stable")
         pixel, name, depth = pixel[order], name[order], depth[order]
@@ -158,12 +163,12 @@ class Raster(Stage):
 
     def passes(self, new: Floats, old: Floats) -> Bools:
         """The depth test: LESS."""
-        return np.asarray(new < old)
+        return new < old
 
     def counted(self, passes: Bools) -> Bools:
         """Which fragments are overdraw: all."""
         return np.ones_like(passes)
 
-    def names(self, vertices: dict[str, Any], vertex: Integers) -> Integers:
-        """The numbers that winners are known by, of points drawn: their own."""
+    def names(self, image: Ints, vertex: Ints) -> Ints:
+        """The numbers that winners are known by: their own. image: of every point (V,); vertex: the points drawn."""
         return vertex

@@ -6,30 +6,28 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ibr_ref.oracle.ports.splatting.stage import Stage
+from ibr_ref.oracle.programs.splatting.case import Case, Floats, Image, Ints
 
-Integers = NDArray[np.integer[Any]]
-Texels = NDArray[Any]
+Texels = Any
 Pages = tuple[Texels, ...]
 
 
-class Atlas(Stage):
+class Atlas(Case):
     """Rectangles, and the three maps of each page."""
 
-    def arrays(self, codes: Sequence[NDArray[np.uint8]]) -> dict[str, Any]:
+    def atlas(self, codes: Sequence[Any]) -> dict[str, Any]:
         """The stage's arrays; codes: the port's own normals (H, W, 3), one array an image."""
         images = self.scene.images
         places = self.places([image.arrays[2].shape for image in images])
         return {
             "atlas.rects": self.rects(places),
-            "atlas.color": self.pages(places, [self.color_texels(image) for image in images]),
+            "atlas.color": self.color_pages(places, [self.color_texels(image) for image in images]),
             "atlas.depth": self.pages(places, [self.depth_texels(image) for image in images]),
             "atlas.normal": self.pages(places, list(codes)),
         }
 
-    def places(self, shapes: Sequence[tuple[int, int]]) -> Integers:
+    def places(self, shapes: Sequence[tuple[int, int]]) -> Ints:
         """(N, 5) page, x, y, width, height: shelves from left to right and from top to bottom, in input order."""
         page, x, y, shelf = 0, 0, 0, 0
         places = []
@@ -50,28 +48,32 @@ class Atlas(Stage):
         """The height of a shelf with one more image on it."""
         return max(shelf, height)
 
-    def rects(self, places: Integers) -> Integers:
+    def rects(self, places: Ints) -> Ints:
         """(N, 5) int32, as they are handed in and read by the vertex stage."""
         return places
 
-    def color_texels(self, image: Any) -> Texels:
-        """(H, W, 3); 0 off the mask."""
+    def color_texels(self, image: Image) -> Texels:
+        """(H, W, 3); 0 off the mask. A byte is fetched as k/255, a quotient."""
         color, _, mask = image.arrays
-        return np.where(mask[:, :, None], self.alu.number(color), 0.0)
+        return self.do.widened(self.do.texels(np.where(mask[:, :, None], color, 0.0)), quotients=1)
 
-    def depth_texels(self, image: Any) -> Texels:
+    def depth_texels(self, image: Image) -> Texels:
         """(H, W) along the view axis; 0 off the mask."""
-        return self.alu.number(image.arrays[1])
+        return self.do.texels(image.arrays[1])
 
-    def pages(self, places: Integers, textures: Sequence[Texels]) -> Pages:
+    def color_pages(self, places: Ints, textures: Sequence[Texels]) -> Pages:
+        """The pages of colours."""
+        return self.pages(places, textures)
+
+    def pages(self, places: Ints, textures: Sequence[Texels]) -> Pages:
         """One array a page, cropped to what it holds."""
         pages = []
         for page in range(places[:, 0].max() + 1):
             held = np.flatnonzero(places[:, 0] == page).tolist()
             width, height = (places[held, 1:3] + places[held, 3:5]).max(axis=0)
-            texels = np.zeros((height, width, *textures[0].shape[2:]), textures[0].dtype)
+            texels: Floats = self.do.blank(textures[0], (height, width, *np.shape(textures[0])[2:]))
             for number in held:
                 _, x, y, w, h = places[number]
-                texels[y : y + h, x : x + w] = textures[number]
+                texels = self.do.replaced(texels, (slice(y, y + h), slice(x, x + w)), textures[number])
             pages.append(texels)
         return tuple(pages)

@@ -1,140 +1,133 @@
-"""Bugs in stage 4."""
-# An override does what its parent says, but for the fault in the class's docstring.
-# ruff: noqa: D102
+"""Bugs of the raster stage."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from ibr_ref.array_types import Bools, Floats
-from ibr_ref.oracle.ports.splatting.atlas import Integers
-from ibr_ref.oracle.ports.splatting.mutants.seeded import mutant
-from ibr_ref.oracle.ports.splatting.raster import Fragments, Raster, Splats
+from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.programs.splatting.case import Bools, Floats, Ints, Vector
+from ibr_ref.oracle.programs.splatting.port import Port
+from ibr_ref.oracle.programs.splatting.raster import Fragments, Splats
+
+RASTER = Bugs("raster")
 
 
-class SizeAsRadius(Raster):
+@RASTER.add("size-as-radius")
+class _SizeAsRadius(Port):
     """The width is taken as the half width."""
 
     def half(self, width: Floats) -> Floats:
         return width
 
 
-class ClosedBorders(Raster):
+@RASTER.add("closed-borders")
+class _ClosedBorders(Port):
     """Centres on the right and lower borders are covered: <= for <."""
 
     def end_before(self, high: Floats) -> Floats:
         return np.floor(high - 0.5) + 1.0
 
 
-class FlippedBorders(Raster):
+@RASTER.add("flipped-borders")
+class _FlippedBorders(Port):
     """Rows are drawn upside down and flipped on read-back: the upper border is open, the lower one closed."""
 
-    def span_of_rows(self, center: Floats, half: Floats, count: int) -> tuple[Integers, Integers]:
+    def span_of_rows(self, center: Floats, half: Floats, count: int) -> tuple[Floats, Floats]:
         first, end = self.span(count - center, half, count)
         return count - end, count - first
 
 
-class CenterOfThePixel(Raster):
+@RASTER.add("center-of-the-pixel")
+class _CenterOfThePixel(Port):
     """Splats are moved to the middle of the pixel that holds their centre."""
 
     def snapped(self, window: Floats) -> Floats:
         return np.floor(window) + 0.5
 
 
-class EighthsOfPixels(Raster):
+@RASTER.add("eighths-of-pixels")
+class _EighthsOfPixels(Port):
     """Centres are snapped to 1/8 pixel."""
 
     def snapped(self, window: Floats) -> Floats:
         return np.rint(8.0 * window) / 8.0
 
 
-class AtLeastOnePixel(Raster):
+@RASTER.add("at-least-one-pixel")
+class _AtLeastOnePixel(Port):
     """Splats below one pixel are drawn one pixel wide."""
 
     def size(self, width: Floats) -> Floats:
         return np.maximum(width, 1.0)
 
 
-class LessOrEqual(Raster):
+@RASTER.add("less-or-equal", hidden="points that tie are twins, of the same colour")
+class _LessOrEqual(Port):
     """On a tie the later splat wins: LEQUAL."""
 
     def passes(self, new: Floats, old: Floats) -> Bools:
         return new <= old
 
 
-class NoDepthTest(Raster):
+@RASTER.add("no-depth-test")
+class _NoDepthTest(Port):
     """The last splat wins, whatever its depth."""
 
     def passes(self, new: Floats, old: Floats) -> Bools:
-        return np.ones_like(new, bool)
+        return np.ones(np.shape(new), np.bool_)
 
 
-class DepthOfSixteenBits(Raster):
+@RASTER.add("depth-of-sixteen-bits", small=True)
+class _DepthOfSixteenBits(Port):
     """The depth buffer has 16 bits."""
 
     def stored_depth(self, depth: Floats) -> Floats:
         return np.floor(65535.0 * depth + 0.5) / 65535.0
 
 
-class SquaresForDiscs(Raster):
+@RASTER.add("squares-for-discs")
+class _SquaresForDiscs(Port):
     """Discs are drawn as squares."""
 
     def in_disc(self, splats: Splats, fragments: Fragments) -> Bools:
-        return np.ones(len(fragments.splat), bool)
+        return np.ones(len(fragments.splat), np.bool_)
 
 
-class DiscHalfPercentSmaller(Raster):
+@RASTER.add("disc-half-percent-smaller", small=True)
+class _DiscHalfPercentSmaller(Port):
     """The disc's radius is 0.5 % too small."""
 
     def squared_radius(self, width: Floats) -> Floats:
         return 0.990025 * super().squared_radius(width)
 
 
-class NumberedByImage(Raster):
+@RASTER.add("numbered-by-image")
+class _NumberedByImage(Port):
     """Winners are numbered from 0 in every image: gl_VertexID without the first vertex of the draw."""
 
-    def names(self, vertices: dict[str, Any], vertex: Integers) -> Integers:
-        image: Integers = vertices["vertex.source"][:, 0]
+    def names(self, image: Ints, vertex: Ints) -> Ints:
         return vertex - np.searchsorted(image, image[vertex])
 
 
-class OverdrawOfWinners(Raster):
+@RASTER.add("overdraw-of-winners", hidden="nothing but the check reads raster.overdraw")
+class _OverdrawOfWinners(Port):
     """Overdraw counts the splats that pass the depth test, not all that cover the pixel: the test is early."""
 
     def counted(self, passes: Bools) -> Bools:
         return passes
 
 
-class LastRowUndrawn(Raster):
+@RASTER.add("last-row-undrawn")
+class _LastRowUndrawn(Port):
     """The scissor ends one row too high."""
 
-    def span_of_rows(self, center: Floats, half: Floats, count: int) -> tuple[Integers, Integers]:
+    def span_of_rows(self, center: Floats, half: Floats, count: int) -> tuple[Floats, Floats]:
         return super().span_of_rows(center, half, count - 1)
 
 
-class LastSplatUndrawn(Raster):
+@RASTER.add("last-splat-undrawn", small=True)
+class _LastSplatUndrawn(Port):
     """The last splat is left out: count − 1 for count in the draw."""
 
-    def splats(self, vertices: dict[str, Any]) -> Splats:
-        return Splats._make(values[:-1] for values in super().splats(vertices))
-
-
-MUTANTS = (
-    mutant(SizeAsRadius),
-    mutant(ClosedBorders),
-    mutant(FlippedBorders),
-    mutant(CenterOfThePixel),
-    mutant(EighthsOfPixels),
-    mutant(AtLeastOnePixel),
-    mutant(LessOrEqual, hidden="points that tie are twins, of the same colour"),
-    mutant(NoDepthTest),
-    mutant(DepthOfSixteenBits, small=True),
-    mutant(SquaresForDiscs),
-    mutant(DiscHalfPercentSmaller, small=True),
-    mutant(NumberedByImage),
-    mutant(OverdrawOfWinners, hidden="nothing but the check reads raster.overdraw"),
-    mutant(LastRowUndrawn),
-    mutant(LastSplatUndrawn, small=True),
-)
+    def splats(self, vertex: Ints, window: Vector, width: Floats, depth: Floats) -> Splats:
+        return Splats._make(values[:-1] for values in super().splats(vertex, window, width, depth))
