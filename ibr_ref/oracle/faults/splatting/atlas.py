@@ -118,3 +118,51 @@ class _ColorsOfHalfPrecision(Port):
 
     def color_texels(self, image: Image) -> Texels:
         return super().color_texels(image).astype(np.float16).astype(np.float64)
+
+
+@ATLAS.add("page-not-filled", hidden="texels are fetched from where they were put")
+class _PageNotFilled(Port):
+    """An image that just fits is put on the next shelf or page: < for <=."""
+
+    def fits(self, start: int, extent: int) -> bool:
+        return start == 0 or start + extent < self.params.max_atlas_size
+
+
+@ATLAS.add("gutter-between-shelves", hidden="texels are fetched from where they were put")
+class _GutterBetweenShelves(Port):
+    """A row of texels is left free below every shelf."""
+
+    def shelf_height(self, shelf: int, height: int) -> int:
+        return max(shelf, height + 1)
+
+
+@ATLAS.add("depths-upside-down")
+class _DepthsUpsideDown(Port):
+    """The depths' rows are uploaded from below, those of the colours from above."""
+
+    def depth_texels(self, image: Image) -> Texels:
+        return super().depth_texels(image)[::-1]
+
+
+@ATLAS.add("texels-decoded-from-srgb")
+class _TexelsDecodedFromSrgb(Port):
+    """Colours are uploaded as sRGB and made linear, though they are linear already."""
+
+    def color_texels(self, image: Image) -> Texels:
+        return super().color_texels(image) ** 2.2
+
+
+@ATLAS.add("depths-of-millimetres", small=True)
+class _DepthsOfMillimetres(Port):
+    """Depths are stored in whole thousandths of the world's unit, as depth cameras do."""
+
+    def depth_texels(self, image: Image) -> Texels:
+        return np.rint(1000.0 * super().depth_texels(image)) / 1000.0
+
+
+@ATLAS.add("colors-of-ten-bits", small=True)
+class _ColorsOfTenBits(Port):
+    """Colours are stored as RGB10_A2."""
+
+    def color_texels(self, image: Image) -> Texels:
+        return np.rint(1023.0 * super().color_texels(image)) / 1023.0

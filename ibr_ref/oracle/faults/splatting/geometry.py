@@ -185,3 +185,147 @@ class _FourDecimals(Port):
 
     def camera_point(self, world: Vector) -> Vector:
         return self.transform(np.round(self.scene.camera.view_from_world, 4), world)[:3]
+
+
+@GEOMETRY.add("rows-upwards")
+class _RowsUpwards(Port):
+    """Rows of the reference are taken to run upwards: y is not negated when pixels are unprojected."""
+
+    def view_point(self, camera: Any, columns: Ints, rows: Ints, depth: Floats) -> Vector:
+        x, y, z = super().view_point(camera, columns, rows, depth)
+        return [x, -y, z]
+
+
+@GEOMETRY.add("center-of-the-image")
+class _CenterOfTheImage(Port):
+    """The principal point is taken to be the middle of the image."""
+
+    def intrinsics(self, camera: Any) -> Any:
+        k = camera.intrinsics.copy()
+        k[:2, 2] = 0.5 * camera.width, 0.5 * camera.height
+        return k
+
+
+@GEOMETRY.add("depth-behind-the-near-plane")
+class _DepthBehindTheNearPlane(Port):
+    """Depths are taken to be measured from the near plane, not from the eye."""
+
+    def view_point(self, camera: Any, columns: Ints, rows: Ints, depth: Floats) -> Vector:
+        return super().view_point(camera, columns, rows, self.do.add(depth, self.do.number(camera.near)))
+
+
+@GEOMETRY.add("view-matrix-transposed")
+class _ViewMatrixTransposed(Port):
+    """The rotation of T_W→C is uploaded row by row into a shader that reads columns."""
+
+    def camera_point(self, world: Vector) -> Vector:
+        matrix = self.scene.camera.view_from_world.copy()
+        matrix[:3, :3] = matrix[:3, :3].T.copy()
+        return self.transform(matrix, world)[:3]
+
+
+@GEOMETRY.add("aspect-left-out")
+class _AspectLeftOut(Port):
+    """The projection is made for a square picture: x is as wide as y is high."""
+
+    def clip_point(self, view: Vector) -> Vector:
+        x, y, z, w = super().clip_point(view)
+        return [self.do.multiply(x, self.do.number(self.scene.camera.width / self.scene.camera.height)), y, z, w]
+
+
+@GEOMETRY.add("depth-not-divided")
+class _DepthNotDivided(Port):
+    """Window depth is z of clip space, not divided by w: gl_FragDepth = gl_Position.z."""
+
+    def projected(self, clip: Vector, view: Vector) -> tuple[Vector, Floats]:
+        window, _ = super().projected(clip, view)
+        return window, clip[2]
+
+
+@GEOMETRY.add("linear-depth", hidden="the depths keep their order, hence the colours")
+class _LinearDepth(Port):
+    """Window depth is linear between the planes, as depth maps often are."""
+
+    def projected(self, clip: Vector, view: Vector) -> tuple[Vector, Floats]:
+        near, far = self.do.number(self.scene.camera.near), self.do.number(self.scene.camera.far)
+        window, _ = super().projected(clip, view)
+        return window, self.do.divide(self.do.subtract(-view[2], near), self.do.subtract(far, near))
+
+
+@GEOMETRY.add("reversed-depth")
+class _ReversedDepth(Port):
+    """Window depth is 1 − z, by a reversed projection, and the test is LESS all the same."""
+
+    def window_depth(self, z: Floats) -> Floats:
+        return self.do.subtract(1.0, z)
+
+
+@GEOMETRY.add("far-plane-open", hidden="their depths are above 1 and never win")
+class _FarPlaneOpen(Port):
+    """Points beyond the far plane are kept."""
+
+    def inside_planes(self, z: Floats, w: Floats) -> Bools:
+        return z >= 0.0
+
+
+@GEOMETRY.add("planes-of-minus-one")
+class _PlanesOfMinusOne(Port):
+    """Points are kept for −w ≤ z, where clip z begins at 0."""
+
+    def inside_planes(self, z: Floats, w: Floats) -> Bools:
+        return (z >= -w) & (z <= w)
+
+
+@GEOMETRY.add("whole-pixels")
+class _WholePixels(Port):
+    """Window positions are cast to integers."""
+
+    def window_x(self, x: Floats) -> Floats:
+        return np.floor(super().window_x(x))
+
+    def window_y(self, y: Floats) -> Floats:
+        return np.floor(super().window_y(y))
+
+
+@GEOMETRY.add("window-of-half-precision", small=True)
+class _WindowOfHalfPrecision(Port):
+    """Normalized device coordinates are half floats: mediump."""
+
+    def window_x(self, x: Floats) -> Floats:
+        return super().window_x(x.astype(np.float16).astype(np.float64))
+
+    def window_y(self, y: Floats) -> Floats:
+        return super().window_y(y.astype(np.float16).astype(np.float64))
+
+
+@GEOMETRY.add("intrinsics-of-two-decimals", small=True)
+class _IntrinsicsOfTwoDecimals(Port):
+    """The intrinsics are read from a text with two decimals."""
+
+    def intrinsics(self, camera: Any) -> Any:
+        return np.round(camera.intrinsics, 2)
+
+
+@GEOMETRY.add("reference-pose-of-four-decimals", small=True)
+class _ReferencePoseOfFourDecimals(Port):
+    """T_R→W is read from a text with four decimals."""
+
+    def world_from_view(self, camera: Any) -> Any:
+        return np.round(camera.world_from_view, 4)
+
+
+@GEOMETRY.add("projection-of-four-decimals", small=True)
+class _ProjectionOfFourDecimals(Port):
+    """T_P is read from a text with four decimals."""
+
+    def clip_point(self, view: Vector) -> Vector:
+        return self.transform(np.round(self.scene.camera.clip_from_view, 4), view)
+
+
+@GEOMETRY.add("far-plane-at-infinity", small=True, hidden="the depths keep their order, hence the colours")
+class _FarPlaneAtInfinity(Port):
+    """Window depth is that of a projection without a far plane, 1 − near/−z."""
+
+    def projected(self, clip: Vector, view: Vector) -> tuple[Vector, Floats]:
+        window, _ = super().projected(clip, view)
+        return window, self.do.add(1.0, self.do.divide(self.do.number(self.scene.camera.near), view[2]))

@@ -133,3 +133,60 @@ class _DistanceOfHalfPrecision(Port):
 
     def distance(self, image: Image, world: Vector, view: Vector) -> Floats:
         return super().distance(image, world, view).astype(np.float16).astype(np.float64)
+
+
+@LAW.add("fixed-function-attenuation")
+class _FixedFunctionAttenuation(Port):
+    """α times the root of 1/(β d² + γ d + δ), as GL_POINT_DISTANCE_ATTENUATION has it."""
+
+    def width(self, d: Floats) -> Floats:
+        root = self.do.root(self.do.divide(1.0, self.denominator(d)))
+        return self.do.multiply(self.do.number(self.params.alpha), root)
+
+
+@LAW.add("coefficients-backwards")
+class _CoefficientsBackwards(Port):
+    """β and δ are exchanged: constant, linear, quadratic, the order of GL's attenuation."""
+
+    def law(self) -> list[Floats]:
+        return super().law()[::-1]
+
+
+@LAW.add("divided-by-distance")
+class _DividedByDistance(Port):
+    """The width is divided by d once more: gl_PointSize / gl_Position.w on top of the law."""
+
+    def width(self, d: Floats) -> Floats:
+        return self.do.divide(super().width(d), d)
+
+
+@LAW.add("width-as-integer")
+class _WidthAsInteger(Port):
+    """The width is cast to an integer."""
+
+    def clamp_width(self, width: Floats) -> Floats:
+        return np.floor(super().clamp_width(width))
+
+
+@LAW.add("width-for-the-other-resolution")
+class _WidthForTheOtherResolution(Port):
+    """The width is multiplied by a device pixel ratio of 2, the picture is not."""
+
+    def clamp_width(self, width: Floats) -> Floats:
+        return self.do.multiply(2.0, super().clamp_width(width))
+
+
+@LAW.add("distance-from-the-near-plane")
+class _DistanceFromTheNearPlane(Port):
+    """d begins at the near plane."""
+
+    def distance(self, image: Image, world: Vector, view: Vector) -> Floats:
+        return self.do.subtract(super().distance(image, world, view), self.do.number(self.scene.camera.near))
+
+
+@LAW.add("law-of-half-precision", small=True)
+class _LawOfHalfPrecision(Port):
+    """β, γ and δ are uploaded as half floats."""
+
+    def law(self) -> list[Floats]:
+        return [self.do.number(np.float16(getattr(self.params, name))) for name in ("beta", "gamma", "delta")]

@@ -234,3 +234,154 @@ class _ClampedBelowOne(Port):
 
     def clamped(self, channel: Floats) -> Floats:
         return np.clip(channel, 0.0, 0.998)
+
+
+@LIGHTING.add("albedo-decoded-from-srgb")
+class _AlbedoDecodedFromSrgb(Port):
+    """Stored colours are made linear, though they are linear already."""
+
+    def lit(self, image: Image, world: Vector, codes: Vector, albedo: Vector) -> Vector:
+        return super().lit(image, world, codes, [channel**2.2 for channel in albedo])
+
+
+@LIGHTING.add("colors-encoded-in-the-shader")
+class _ColorsEncodedInTheShader(Port):
+    """Colours leave the vertex stage with a gamma of 2.2."""
+
+    def clamped(self, channel: Floats) -> Floats:
+        return super().clamped(channel) ** (1.0 / 2.2)
+
+
+@LIGHTING.add("normals-of-zero-to-one")
+class _NormalsOfZeroToOne(Port):
+    """Normals are k/255: twice that minus one is left out."""
+
+    def decode(self, code: Floats) -> Floats:
+        return self.do.divide(code, 255.0)
+
+
+@LIGHTING.add("normals-inwards")
+class _NormalsInwards(Port):
+    """Normals point into the surface."""
+
+    def normal(self, codes: Vector) -> Vector:
+        return [-x for x in super().normal(codes)]
+
+
+@LIGHTING.add("y-and-z-of-normals-exchanged")
+class _NormalsOfAnotherUp(Port):
+    """Normals are of a world with y up: their y and z are exchanged."""
+
+    def normal(self, codes: Vector) -> Vector:
+        x, y, z = super().normal(codes)
+        return [x, z, y]
+
+
+@LIGHTING.add("normals-in-view-space")
+class _NormalsInViewSpace(Port):
+    """Normals are turned into view space, the light is not."""
+
+    def normal(self, codes: Vector) -> Vector:
+        normal = super().normal(codes)
+        return [self.do.dot(list(row), normal) for row in self.do.matrix(self.scene.camera.view_from_world[:3, :3])]
+
+
+@LIGHTING.add("negative-light")
+class _NegativeLight(Port):
+    """max(0, n·l) is n·l: surfaces turned away are darker than the ambient light."""
+
+    def lambert(self, facing: Floats) -> Floats:
+        return facing
+
+
+@LIGHTING.add("ambient-without-albedo")
+class _AmbientWithoutAlbedo(Port):
+    """The ambient light has not the surface's colour."""
+
+    def shaded(self, albedo: Vector, received: Floats, shine: Floats) -> Vector:
+        ambient = self.coefficient("ambient")
+        diffuse = self.do.subtract(received, ambient)
+        return [self.do.dot([channel, shine, ambient], [diffuse, 1.0, 1.0]) for channel in albedo]
+
+
+@LIGHTING.add("direction-as-position")
+class _DirectionAsPosition(Port):
+    """The sun's direction is taken for the place of a lamp: w of the light is not looked at."""
+
+    def towards_light(self, world: Vector) -> Vector:
+        return self.towards([*self.scene.light.homogeneous[:3], 1.0], world)
+
+
+@LIGHTING.add("position-as-direction")
+class _PositionAsDirection(Port):
+    """The lamp's place is taken for a direction: the points are not subtracted from it."""
+
+    def towards_light(self, world: Vector) -> Vector:
+        place = np.asarray(self.scene.light.homogeneous[:3], np.float64)
+        return self.towards([*place / np.sqrt(place @ place), 0.0], world)
+
+
+@LIGHTING.add("eye-in-the-origin")
+class _EyeInTheOrigin(Port):
+    """v is −p: right in view space, but the points are in the world's."""
+
+    def eye(self, image: Image) -> Any:
+        return np.array([0.0, 0.0, 0.0, 1.0])
+
+
+@LIGHTING.add("view-vector-from-the-eye")
+class _ViewVectorFromTheEye(Port):
+    """v points from the eye to the point."""
+
+    def towards_eye(self, image: Image, world: Vector) -> Vector:
+        return [-x for x in super().towards_eye(image, world)]
+
+
+@LIGHTING.add("exponent-times-four")
+class _ExponentTimesFour(Port):
+    """The exponent is Blinn's, four times as large, the cosine Phong's."""
+
+    def exponent(self) -> int:
+        return 4 * super().exponent()
+
+
+@LIGHTING.add("highlight-times-the-cosine")
+class _HighlightTimesTheCosine(Port):
+    """The highlight is multiplied by n·l, as the diffuse light is."""
+
+    def highlight(self, normal: Vector, light: Vector, image: Image, world: Vector, facing: Floats) -> Floats:
+        return self.do.multiply(super().highlight(normal, light, image, world, facing), np.maximum(facing, 0.0))
+
+
+@LIGHTING.add("specular-of-bytes", small=True)
+class _SpecularOfBytes(Port):
+    """The specular light is held as a byte."""
+
+    def coefficient(self, name: str) -> Floats:
+        value = super().coefficient(name)
+        return np.rint(255.0 * value) / 255.0 if name == "specular" else value
+
+
+@LIGHTING.add("exponent-one-more", small=True)
+class _ExponentOneMore(Port):
+    """The highlight's exponent is one too large: a loop that runs once too often."""
+
+    def exponent(self) -> int:
+        return super().exponent() + 1
+
+
+@LIGHTING.add("faint-highlights-cut", small=True)
+class _FaintHighlightsCut(Port):
+    """Highlights below 1/100 are left out, to save a branch its work."""
+
+    def highlight(self, normal: Vector, light: Vector, image: Image, world: Vector, facing: Floats) -> Floats:
+        shine = super().highlight(normal, light, image, world, facing)
+        return np.where(shine < 0.01, 0.0, shine)
+
+
+@LIGHTING.add("vertex-colors-in-bytes", small=True)
+class _VertexColorsInBytes(Port):
+    """Colours leave the vertex stage as bytes."""
+
+    def clamped(self, channel: Floats) -> Floats:
+        return np.rint(255.0 * super().clamped(channel)) / 255.0

@@ -131,3 +131,120 @@ class _LastSplatUndrawn(Port):
 
     def splats(self, vertex: Ints, window: Vector, width: Floats, depth: Floats) -> Splats:
         return Splats._make(values[:-1] for values in super().splats(vertex, window, width, depth))
+
+
+@RASTER.add("farthest-wins")
+class _FarthestWins(Port):
+    """GREATER for LESS, of what is drawn at all."""
+
+    def passes(self, new: Floats, old: Floats) -> Bools:
+        return ((old == 1.0) & (new < old)) | ((old != 1.0) & (new > old))
+
+
+@RASTER.add("first-wins")
+class _FirstWins(Port):
+    """What is drawn is never overdrawn: NOTEQUAL to nothing, in place of a depth test."""
+
+    def passes(self, new: Floats, old: Floats) -> Bools:
+        return (old == 1.0) & (new < 1.0)
+
+
+@RASTER.add("nearer-by-a-margin", small=True)
+class _NearerByAMargin(Port):
+    """A splat must be nearer by 1/10000 to win: an epsilon against flicker."""
+
+    def passes(self, new: Floats, old: Floats) -> Bools:
+        return new < np.where(old == 1.0, old, old - 1e-4)
+
+
+@RASTER.add("polygon-offset", hidden="the depths keep their order, hence the colours")
+class _PolygonOffset(Port):
+    """Depths are moved by 1/2^15: glPolygonOffset is left on."""
+
+    def stored_depth(self, depth: Floats) -> Floats:
+        return super().stored_depth(depth + 2.0**-15)
+
+
+@RASTER.add("points-of-whole-pixels")
+class _PointsOfWholePixels(Port):
+    """Widths are rounded to whole pixels, at least one, as aliased points were in GL 1."""
+
+    def size(self, width: Floats) -> Floats:
+        return np.maximum(np.rint(width), 1.0)
+
+
+@RASTER.add("small-splats-undrawn")
+class _SmallSplatsUndrawn(Port):
+    """Splats narrower than a pixel are left out as too small to see."""
+
+    def size(self, width: Floats) -> Floats:
+        return np.where(width < 1.0, 0.0, width)
+
+
+@RASTER.add("rows-of-another-aspect")
+class _RowsOfAnotherAspect(Port):
+    """Quads are as high as wide in normalized device coordinates, not in pixels."""
+
+    def span_of_rows(self, center: Floats, half: Floats, count: int) -> tuple[Floats, Floats]:
+        return self.span(center, half * (self.scene.camera.height / self.scene.camera.width), count)
+
+
+@RASTER.add("viewport-a-row-too-high")
+class _ViewportARowTooHigh(Port):
+    """The viewport begins one row too high."""
+
+    def span_of_rows(self, center: Floats, half: Floats, count: int) -> tuple[Floats, Floats]:
+        return super().span_of_rows(center - 1.0, half, count)
+
+
+@RASTER.add("diamonds-for-discs")
+class _DiamondsForDiscs(Port):
+    """|dx| + |dy| ≤ w/2: the corners of the square are cut off straight."""
+
+    def in_disc(self, splats: Splats, fragments: Fragments) -> Bools:
+        splat = fragments.splat
+        dx = np.abs(self.do.subtract(fragments.column + 0.5, splats.x[splat]))
+        dy = np.abs(self.do.subtract(fragments.row + 0.5, splats.y[splat]))
+        return self.do.add(dx, dy) <= 0.5 * splats.width[splat]
+
+
+@RASTER.add("discs-from-the-corner")
+class _DiscsFromTheCorner(Port):
+    """The disc is measured from the pixels' upper left corners: gl_PointCoord half a pixel off."""
+
+    def in_disc(self, splats: Splats, fragments: Fragments) -> Bools:
+        moved = splats._replace(x=splats.x + 0.5, y=splats.y + 0.5)
+        return super().in_disc(moved, fragments)
+
+
+@RASTER.add("disc-half-percent-larger", small=True)
+class _DiscHalfPercentLarger(Port):
+    """The disc's radius is 0.5 % too large."""
+
+    def squared_radius(self, width: Floats) -> Floats:
+        return 1.010025 * super().squared_radius(width)
+
+
+@RASTER.add("borders-a-subpixel-off", small=True)
+class _BordersASubpixelOff(Port):
+    """Both borders of a row lie one subpixel too low."""
+
+    def span_of_rows(self, center: Floats, half: Floats, count: int) -> tuple[Floats, Floats]:
+        return super().span_of_rows(center + 1.0 / 256.0, half, count)
+
+
+@RASTER.add("last-column-undrawn", small=True)
+class _LastColumnUndrawn(Port):
+    """The scissor ends one column too early."""
+
+    def spans(self, splats: Splats) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+        camera, half = self.scene.camera, self.half(splats.width)
+        return self.span(splats.x, half, camera.width - 1), self.span_of_rows(splats.y, half, camera.height)
+
+
+@RASTER.add("first-splat-undrawn", small=True)
+class _FirstSplatUndrawn(Port):
+    """The draw begins with the second splat: a first vertex of 1."""
+
+    def splats(self, vertex: Ints, window: Vector, width: Floats, depth: Floats) -> Splats:
+        return Splats._make(values[1:] for values in super().splats(vertex, window, width, depth))

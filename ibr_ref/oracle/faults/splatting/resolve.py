@@ -99,3 +99,67 @@ class _LastColumnUnresolved(Port):
 
     def drawn(self, row: Ints, column: Ints) -> Bools:
         return column < self.scene.camera.width - 1
+
+
+@RESOLVE.add("picture-mirrored")
+class _PictureMirrored(Port):
+    """The picture's columns run from the right."""
+
+    def rows(self, picture: Any) -> Any:
+        return picture[:, ::-1]
+
+
+@RESOLVE.add("decoded-for-screens")
+class _DecodedForScreens(Port):
+    """The picture is made linear once more: a gamma of 2.2 for 1/2.2."""
+
+    def written(self, color: Floats) -> Floats:
+        return color**2.2
+
+
+@RESOLVE.add("colors-in-256-steps", small=True)
+class _ColorsIn256Steps(Port):
+    """Bytes are floor(256 c), and read as k/256."""
+
+    def written(self, color: Floats) -> Floats:
+        return np.floor(256.0 * np.clip(color, 0.0, 1.0)) / 256.0
+
+
+@RESOLVE.add("ten-bits-a-channel", small=True)
+class _TenBitsAChannel(Port):
+    """The frame buffer has ten bits a channel."""
+
+    def written(self, color: Floats) -> Floats:
+        return np.rint(1023.0 * color) / 1023.0
+
+
+@RESOLVE.add("color-of-the-pixel-to-the-left")
+class _ColorOfThePixelToTheLeft(Port):
+    """Winners are fetched one column too far left: half a texel in the fetch."""
+
+    def read_at(self, row: Ints, column: Ints) -> tuple[Ints, Ints]:
+        return row, np.maximum(column - 1, 0)
+
+
+@RESOLVE.add("picture-of-half-precision", small=True, hidden="far below the steps of bytes")
+class _PictureOfHalfPrecision(Port):
+    """The frame buffer holds half floats."""
+
+    def written(self, color: Floats) -> Floats:
+        return color.astype(np.float16).astype(np.float64)
+
+
+@RESOLVE.add("bytes-rounded-up", small=True)
+class _BytesRoundedUp(Port):
+    """Colours are written in bytes and rounded up."""
+
+    def written(self, color: Floats) -> Floats:
+        return np.ceil(255.0 * color) / 255.0
+
+
+@RESOLVE.add("first-row-unresolved", small=True)
+class _FirstRowUnresolved(Port):
+    """The pass over the picture begins with the second row."""
+
+    def drawn(self, row: Ints, column: Ints) -> Bools:
+        return row > 0

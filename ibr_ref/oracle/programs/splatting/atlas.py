@@ -16,22 +16,20 @@ Pages = tuple[Texels, ...]
 class Atlas(Case):
     """Rectangles, and the three maps of each page."""
 
-    def atlas(self, codes: Sequence[Any]) -> dict[str, Any]:
-        """The stage's arrays; codes: the port's own normals (H, W, 3), one array an image."""
-        images = self.scene.images
-        places = self.places([image.arrays[2].shape for image in images])
+    def atlas(self) -> dict[str, Any]:
+        """The stage's arrays but for the normals, which are packed likewise."""
+        places, images = self.places(), self.scene.images
         return {
             "atlas.rects": self.rects(places),
             "atlas.color": self.color_pages(places, [self.color_texels(image) for image in images]),
             "atlas.depth": self.pages(places, [self.depth_texels(image) for image in images]),
-            "atlas.normal": self.pages(places, list(codes)),
         }
 
-    def places(self, shapes: Sequence[tuple[int, int]]) -> Ints:
+    def places(self) -> Ints:
         """(N, 5) page, x, y, width, height: shelves from left to right and from top to bottom, in input order."""
         page, x, y, shelf = 0, 0, 0, 0
         places = []
-        for height, width in shapes:
+        for height, width in (image.arrays[2].shape for image in self.scene.images):
             if not self.fits(x, width):
                 x, y, shelf = 0, y + shelf, 0
             if not self.fits(y, height):

@@ -26,7 +26,7 @@ class Port(Atlas, Vertex, Raster, Resolve):
         with np.errstate(all="ignore"):  # a device knows no traps
             prepared = self.preparation(self.scene, self.params, self.do.policy, {})
             codes = [prepared.codes(image) for image in self.scene.images]
-            atlas = self.atlas(codes)
+            atlas = {**self.atlas(), "atlas.normal": self.pages(self.places(), codes)}
             vertices = self.vertices(atlas, self.inputs.get("normals", codes))
             raster = self.raster(vertices)
             color = self.resolve(vertices["vertex.color"], raster["raster.splat"])
