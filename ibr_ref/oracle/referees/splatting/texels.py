@@ -156,15 +156,27 @@ def judge_atlas(port: Port) -> Judgement:
         if name in given:
             legal = [page_of(model.atlas[name], i, shape) for i, shape in enumerate(shapes)]
             found = [page_of(given[name], i, shape) for i, shape in enumerate(shapes)]
-            texels = joined([x.each(lambda v: v.reshape(v.shape[0] * v.shape[1], -1), None) for x in legal])
-            mine = np.concatenate([x.value.reshape(x.value.shape[0] * x.value.shape[1], -1) for x in found])
-            bad[name] = ~texels.allows(mine).all(axis=1)
+            texels = joined([x.each(_rows, None) for x in legal])
+            bad[name] = ~texels.allows(np.concatenate([_flat(x) for x in found])).all(axis=1)
             width = np.fmax(width, 2.0 * texels.deviation.max(axis=1))
     if "atlas.normal" in given:
-        pages = [page_of(given["atlas.normal"], i, shape).value.reshape(-1, 3) for i, shape in enumerate(shapes)]
+        codes, there = (
+            np.concatenate([_flat(page_of(pages, i, shape)) for i, shape in enumerate(shapes)])
+            for pages in (given["atlas.normal"], model.atlas["atlas.depth"])
+        )
+        same = (codes == 0) | (np.isnan(codes) & np.isnan(there))
         free = np.concatenate([each.reshape(-1) for each in _owners(model.atlas["atlas.rects"], shapes)]) < 0
-        bad["atlas.normal"] = free & (np.concatenate(pages) != 0).any(axis=1)
+        bad["atlas.normal"] = free & ~same.all(axis=1)
     return judgement("atlas", "texel", bad, np.zeros(len(width), np.bool_), width, places=_places(owners))
+
+
+def _rows(page: Floats) -> Floats:
+    """(h w, c) of (h, w) or (h, w, c)."""
+    return page.reshape(page.shape[0] * page.shape[1], -1)
+
+
+def _flat(page: Number) -> Floats:
+    return _rows(page.value)
 
 
 def _places(pages: list[Ints]) -> Ints:
