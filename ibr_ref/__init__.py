@@ -34,6 +34,7 @@ __all__ = [
     "oracle",
     "shadows",
     "splatting",
+    "view",
 ]
 
 _MODULES = ("displacement", "io", "metrics", "models", "oracle", "shadows", "splatting")
@@ -43,6 +44,8 @@ def __getattr__(name: str) -> Any:
     """Import on first use: `ibr-ref --help` must not wait for Numba."""
     if name in _MODULES:
         return importlib.import_module(f"ibr_ref.{name}")
+    if name == "view":
+        return importlib.import_module("ibr_ref.viewer").view
     if name in __all__:
         return getattr(importlib.import_module("ibr_ref.scene"), name)
     raise AttributeError(f"module 'ibr_ref' has no attribute {name!r}")

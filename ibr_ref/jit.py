@@ -1,7 +1,8 @@
 """How kernels are compiled: the only file that names Numba options.
 
 Every kernel is strict IEEE float64 (no fast-math, no contraction), so that its bits equal those of plain Python, and
-raises nothing: inside a parallel loop an exception would be lost, so that inputs are validated on the host.
+raises nothing: inside a parallel loop an exception would be lost, so that inputs are validated on the host. While one runs,
+other threads of Python do too: those that answer a page, or end the program when somebody asks for it.
 
 A parallel loop's body calls one device function per item. It must not store into the fields of a tuple itself: Numba
 (0.68) takes such stores for dead code and drops them without a word.
@@ -105,7 +106,7 @@ def _entry(function: Function, parallel: bool) -> Function:
     # Read while decorating; restored, because other packages read it too.
     config.CACHE_DIR = "" if config.DISABLE_JIT else _cache_directory(_room(function))
     try:
-        compiled = numba.njit(parallel=parallel, error_model="numpy", fastmath=False, cache=True)(function)
+        compiled = numba.njit(parallel=parallel, error_model="numpy", fastmath=False, cache=True, nogil=True)(function)
     finally:
         config.CACHE_DIR = before
     functions.append(compiled)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ibr_ref.cli import base_polygon, depth_set_options, emptiness, options, own_case
+from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 from ibr_ref.methods import named
 from ibr_ref.progress import progress
@@ -66,8 +67,7 @@ class FaceSet(StrEnum):
     extended = "extended"
 
 
-def command(
-    out: options.Out,
+def read(
     height: Annotated[
         Path | None,
         typer.Option(help="Height map, white is high: PNG, JPEG, TIFF, GeoTIFF, EXR, PFM, .hgt, .raw, .r16, .r32."),
@@ -172,66 +172,78 @@ def command(
     distance_layers: Annotated[
         int, typer.Option(parser=options.whole, help="donnelly: layers of the distance texture.")
     ] = 32,
+) -> Described:
+    """What the options describe. Raises ValueError and OSError for maps and numbers that make no scene."""
+    from ibr_ref import displacement
+    from ibr_ref.scene import Camera, Light
+
+    heights, normals = base_polygon.read_maps(
+        height,
+        normal_height,
+        normal,
+        invert_height=invert_height,
+        exif=not no_exif,
+        kind=height_format and height_format.value,
+        size=height_size,
+        order=height_order and height_order.value,
+        height_range=height_range,
+        nodata=nodata,
+        fill=fill,
+    )
+    polygon = base_polygon.polygon(
+        heights,
+        normals,
+        color,
+        facade,
+        proportions=heights.proportions(height_scale, texel_size),
+        facade_tile=facade_tile,
+        exif=not no_exif,
+    )
+    del heights
+    params = displacement.Params(
+        linear_steps=steps,
+        binary_steps=binary_steps,
+        steep_threshold=delta,
+        shadow_steps=shadow_steps,
+        interval=interval.value,
+        faces=faces.value,
+        method=str(method),
+        lod_bias=lod_bias,
+        min_steps=min_steps,
+        max_steps=max_steps,
+        distance_layers=distance_layers,
+    )
+    view = Camera.look_at(
+        eye=eye, target=target, up=options.up(eye, target), vertical_fov=fov, width=size.width, height=size.height
+    )
+    scene = displacement.Scene(
+        polygons=[polygon],
+        camera=view.fitted(displacement.bounding_points([polygon], view, params), near=near, far=far),
+        light=Light(direction=light),
+        background=(1.0, 1.0, 1.0),
+    )
+    return Described(scene, params, {})
+
+
+@beside(read)
+def command(
+    out: options.Out,
     depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
     case: own_case.Folder = None,
+    **described: Any,
 ) -> None:
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
     with progress(3) as step:
         step("reading maps")
         from ibr_ref import displacement, io
-        from ibr_ref.scene import Camera, Light
 
         io.check_image_writable(out, bits)
         own_case.check_writable(case)
         if stages is not None:
             io.check_writable(stages)
-        heights, normals = base_polygon.read_maps(
-            height,
-            normal_height,
-            normal,
-            invert_height=invert_height,
-            exif=not no_exif,
-            kind=height_format and height_format.value,
-            size=height_size,
-            order=height_order and height_order.value,
-            height_range=height_range,
-            nodata=nodata,
-            fill=fill,
-        )
-        polygon = base_polygon.polygon(
-            heights,
-            normals,
-            color,
-            facade,
-            proportions=heights.proportions(height_scale, texel_size),
-            facade_tile=facade_tile,
-            exif=not no_exif,
-        )
-        del heights
-        params = displacement.Params(
-            linear_steps=steps,
-            binary_steps=binary_steps,
-            steep_threshold=delta,
-            shadow_steps=shadow_steps,
-            interval=interval.value,
-            faces=faces.value,
-            method=str(method),
-            lod_bias=lod_bias,
-            min_steps=min_steps,
-            max_steps=max_steps,
-            distance_layers=distance_layers,
-        )
-        view = Camera.look_at(
-            eye=eye, target=target, up=options.up(eye, target), vertical_fov=fov, width=size.width, height=size.height
-        )
-        scene = displacement.Scene(
-            polygons=[polygon],
-            camera=view.fitted(displacement.bounding_points([polygon], view, params), near=near, far=far),
-            light=Light(direction=light),
-            background=(1.0, 1.0, 1.0),
-        )
+        scene, params, *_ = read(**described)
         step("rendering")
         frame = displacement.render(scene, params, stages=stages is not None)
         step("writing")

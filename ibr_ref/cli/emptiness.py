@@ -21,10 +21,10 @@ def say(frame: Frame, culled: Callable[[], Culled]) -> None:
     print(f"ibr-ref: nothing is drawn: {found.words()}{why}", file=sys.stderr)
 
 
-def say_cut(cut: Cut) -> None:
-    """What the light's frustum does not hold, if anything."""
+def say_cut(cut: Cut, name: str = "") -> None:
+    """What the light's frustum does not hold, if anything; name: of the caster and the light, where there are several."""
     if cut.cut:
         print(
-            f"ibr-ref: the light's frustum does not hold the caster, whose shadow is cut: {cut.words()}",
+            f"ibr-ref: {name}the light's frustum does not hold the caster, whose shadow is cut: {cut.words()}",
             file=sys.stderr,
         )

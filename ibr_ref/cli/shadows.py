@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import depth_set_options, emptiness, options, own_case
+from ibr_ref.cli import depth_set_options, emptiness, options, own_case, shadows_several, shadows_stage
 from ibr_ref.cli.command import given
+from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
 from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from ibr_ref.io import Frame
-    from ibr_ref.progress import Step
-    from ibr_ref.scene import Mesh
     from ibr_ref.shadows import Maps, Params, Scene, SoftParams
 
 EXAMPLES = """
@@ -82,46 +82,20 @@ class Controls(StrEnum):
     identity = "identity"
 
 
-class Up(StrEnum):
-    """Axis of the mesh that points up."""
-
-    y = "y"
-    z = "z"
-
-
-def command(
+def read(
     context: typer.Context,
-    out: options.Out,
-    caster: Annotated[
-        Path | None, typer.Option(help="The mesh that moves: OBJ, PLY, STL, glTF, Bézier patches. Without: a horse.")
+    caster: shadows_stage.Casters = None,
+    up: Annotated[
+        shadows_stage.Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")
     ] = None,
-    up: Annotated[Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")] = None,
-    offset: Annotated[
-        options.Pair,
-        typer.Option(parser=options.pair, metavar="X,Y", help="Where it stands, -0.6 to 0.6 each."),
-    ] = options.Pair(0, 0),
+    offset: shadows_stage.Offsets = None,
     samples: Annotated[
         int, typer.Option(parser=options.whole, help="Samples of the light: 1 (a hard shadow), 5 or 9.")
     ] = 1,
-    light: Annotated[
-        options.Vector | None,
-        typer.Option(
-            parser=options.vector, metavar="X,Y,Z", help="Where the light is; its maps fit. Without: -1,-1.2,5."
-        ),
-    ] = None,
-    light_target: Annotated[
-        options.Vector | None,
-        typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point that the light looks at. Without: 0,0,0."),
-    ] = None,
-    light_size: Annotated[
-        options.Pair,
-        typer.Option(
-            parser=options.one_or_two,
-            metavar="A[,B]",
-            help="Half the side of the light, or half of both, along x and y, for more than one sample; the mesh's largest "
-            "extent is 1.",
-        ),
-    ] = options.Pair(0.12, 0.12),
+    light: shadows_stage.Lights = None,
+    light_target: shadows_stage.LightTargets = None,
+    light_size: shadows_stage.LightSizes = None,
+    light_power: shadows_stage.LightPowers = None,
     method: Annotated[
         Method,
         typer.Option(
@@ -160,6 +134,60 @@ def command(
     size: Annotated[
         options.Size, typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture.")
     ] = options.Size(640, 480),
+    *,
+    within: Callable[[str, int, int], None] | None = None,
+) -> Described:
+    """What the options describe, and the maps; within: told how far these are. Several casters or lights are an Ensemble.
+
+    Raises ValueError and OSError for what makes no scene.
+    """
+    from ibr_ref import io, shadows
+
+    if maps is not None and not _kept(maps):
+        io.check_writable(maps)
+    ensemble = shadows_stage.stage(
+        caster,
+        up,
+        offset,
+        shadows_stage.stage_lights(light, light_target, light_size, light_power),
+        eye=eye,
+        target=target,
+        width=size.width,
+        height=size.height,
+        near=near,
+        far=far,
+    )
+    several = len(ensemble.pairs) > 1 or bool(light_power)
+    if several:
+        shadows_several.check_goes_with(ensemble, {f"--method {method.value}": method.soft, f"--maps {maps}": maps})
+    alone = ensemble.scene(0, 0)
+    scene = ensemble if several else alone
+    if method.soft:
+        return Described(alone, shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples), {})
+    fields: dict[str, Any] = {
+        "map_size": map_size,
+        "map_samples": map_samples,
+        "rows": rows,
+        "columns": columns,
+        "policy": policy.value,
+        "interpolation": interpolation.value,
+        "content": content.value,
+        "light_samples": samples,
+        "method": method.value,
+    }
+    loaded = _loaded(maps, fields, controls, given(context))
+    params = shadows.Params(**fields)
+    if method is not Method.warp:
+        return Described(scene, params, {})
+    if several:
+        made = shadows.prepare_ensemble(ensemble, params, controls=controls.value, progress=within)
+        return Described(scene, params, {"maps": made})
+    return Described(scene, params, {"maps": loaded or _prepared(alone, params, controls, maps, within)})
+
+
+@beside(read)
+def command(
+    out: options.Out,
     report: Annotated[
         bool,
         typer.Option(
@@ -170,65 +198,43 @@ def command(
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
     case: own_case.Folder = None,
+    **described: Any,
 ) -> None:
-    """Shadows by image warping (Kang & Ihm 2002) of a mesh that moves over a floor with steps."""
-    with progress(4) as step:
-        step("reading the mesh")
-        from ibr_ref import io, models, shadows
+    """Shadows by image warping (Kang & Ihm 2002) of meshes that move over a floor with steps, under one light or several."""
+    with progress(3) as step:
+        step("reading the mesh, preparing maps")
+        from ibr_ref import io, shadows
 
         io.check_image_writable(out, bits)
         own_case.check_writable(case)
-        for path in (stages, None if maps is None or _kept(maps) else maps):
-            if path is not None:
-                io.check_writable(path)
-        scene = models.shadow_stage(
-            read_caster(caster, up),
-            offset=offset,
-            light_size=light_size,
-            light_position=light,
-            light_target=light_target,
-            eye=eye,
-            target=target,
-            width=size.width,
-            height=size.height,
-            near=near,
-            far=far,
-        )
-        if method.soft:
-            step("rendering")
-            soft = shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples)
-            frame, lines = _soft_frame(scene, soft, stages is not None, report)
-        else:
-            fields: dict[str, Any] = {
-                "map_size": map_size,
-                "map_samples": map_samples,
-                "rows": rows,
-                "columns": columns,
-                "policy": policy.value,
-                "interpolation": interpolation.value,
-                "content": content.value,
-                "light_samples": samples,
-                "method": method.value,
-            }
-            loaded = _loaded(maps, fields, controls, given(context), step)
-            params = shadows.Params(**fields)
-            prepared = loaded or (_prepared(scene, params, controls, maps, step) if method is Method.warp else None)
-            step("rendering")
-            frame, lines = _frame(scene, params, prepared, stages is not None, report)
-            poor = None if prepared is None else _poor(prepared)
-            if poor:
-                typer.echo(poor, err=True)
+        if stages is not None:
+            io.check_writable(stages)
+        scene, params, inputs, _ = read(**described, within=step.within)
+        several, soft = isinstance(scene, shadows.Ensemble), isinstance(params, shadows.SoftParams)
+        if several:
+            shadows_several.check_goes_with(scene, {f"--case {case}": case})
+        draw = shadows_several.drawn if several else _soft_frame if soft else _frame
+        step("rendering")
+        frame, lines = draw(scene, params, inputs.get("maps"), stages is not None, report)
         step("writing")
         if stages is not None:
             frame.save_stages(stages)
         if depth_set is not None:
             io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
         frame.save(out, bits)
+    if several and inputs:
+        shadows_several.say_poor(scene, inputs["maps"])
+    elif inputs:
+        poor = _poor(inputs["maps"])
+        if poor:
+            typer.echo(poor, err=True)
     for line in lines:
         typer.echo(line)
     emptiness.say(frame, lambda: shadows.culled(scene))
-    if not method.soft:
-        own_case.write(case, scene, params, **({} if prepared is None else {"maps": prepared}))
+    if several:
+        shadows_several.say_cut(scene, params)
+    elif not soft:
+        own_case.write(case, scene, params, **inputs)
         emptiness.say_cut(shadows.cut_by_light(scene, params))
 
 
@@ -248,20 +254,13 @@ def _poor(maps: Maps) -> str | None:
     return poor_line(maps)
 
 
-def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> tuple[Frame, list[str]]:
+def _soft_frame(scene: Scene, params: SoftParams, maps: None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
     """The frame, and what is reported of it."""
     from ibr_ref import shadows
     from ibr_ref.cli.shadows_report import soft_report_line
 
     frame = shadows.render_soft(scene, params, stages=keep or report)
     return frame, [soft_report_line(scene, frame)] if report else []
-
-
-def read_caster(path: Path | None, up: Up | None) -> Mesh:
-    """The caster with z up; without a path the horse."""
-    from ibr_ref import io, models
-
-    return models.horse() if path is None else io.read_upright(path, None if up is None else up.value)
 
 
 def _kept(path: Path) -> bool:
@@ -271,13 +270,12 @@ def _kept(path: Path) -> bool:
     return os.path.exists(path) and not is_stream(path)  # Path.exists raises for names that are too long
 
 
-def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named: set[str], step: Step) -> Maps | None:
+def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named: set[str]) -> Maps | None:
     """Maps from the file if it is there. Fields that were not named become the file's; those that were must be."""
     from ibr_ref import shadows
 
     if path is None or not _kept(path):
         return None
-    step("reading the maps")
     maps = shadows.Maps.load(path)
     wanted = {**fields, "controls": controls.value}
     for name, value in {**maps.made_with, "controls": maps.placement}.items():
@@ -288,12 +286,13 @@ def _loaded(path: Path | None, fields: dict[str, Any], controls: Controls, named
     return maps
 
 
-def _prepared(scene: Scene, params: Params, controls: Controls, path: Path | None, step: Step) -> Maps:
+def _prepared(
+    scene: Scene, params: Params, controls: Controls, path: Path | None, within: Callable[[str, int, int], None] | None
+) -> Maps:
     """Maps made here, and written where a file is named."""
     from ibr_ref import shadows
 
-    step(f"preparing nine maps ({controls.value} controls)")
-    made = shadows.prepare(scene, params, controls=controls.value, progress=step.within)
+    made = shadows.prepare(scene, params, controls=controls.value, progress=within)
     if path is not None:
         made.save(path)
     return made
@@ -309,8 +308,8 @@ def goes_with() -> dict[str, Beside]:
         return Beside(f"others do not read {name}", {"method": READ_BY[name]})
 
     return {
-        **always("out", "bits", "caster", "offset", "light", "light_target", "method", "eye", "target", "near", "far"),
-        **always("size", "report", "stages", "depth_set"),
+        **always("out", "bits", "caster", "offset", "light", "light_target", "light_power", "method", "eye"),
+        **always("target", "near", "far", "size", "report", "stages", "depth_set"),
         "case": Beside(own_case.WHY, {"method": named("shadows").judged[1]}),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),

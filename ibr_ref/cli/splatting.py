@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ibr_ref.cli import depth_set_options, emptiness, options, own_case, splatting_sources
+from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 from ibr_ref.methods import named
 from ibr_ref.progress import progress
@@ -50,8 +51,7 @@ class Method(StrEnum):
     software = "software"
 
 
-def command(
-    out: options.Out,
+def read(
     msr: Annotated[Path | None, typer.Option(help="A folder of MSR 3D Video (calibParams-*.txt, images).")] = None,
     rgbd: depth_set_options.Rgbd = None,
     format_: depth_set_options.OfFormat = depth_set_options.Format.auto,
@@ -154,6 +154,60 @@ def command(
             parser=options.vector, metavar="X,Y,Z", help="Relight, from this direction. Without: the stored colours."
         ),
     ] = None,
+) -> Described:
+    """What the options describe. Raises ValueError and OSError for references and numbers that make no scene."""
+    splatting_sources.check(msr, rgbd, simple_texture, mesh, cameras, view, pose, eye)
+    from ibr_ref import splatting
+    from ibr_ref.scene import Light
+
+    camera, photograph = None, splatting_sources.no_photograph
+    if msr is not None:
+        assert view is not None
+        images, camera, photograph = splatting_sources.from_msr(msr, cameras, view, frame, near, far)
+    elif rgbd is not None:
+        images, camera, photograph = splatting_sources.from_rgbd(
+            rgbd,
+            cameras,
+            view,
+            pose,
+            (near, far),
+            format=None if format_.value == "auto" else format_.value,
+            depth_scale=depth_scale,
+            convention=convention,
+            poses=poses,
+            along=along,
+            pixel_centers=pixel_centers,
+            intrinsics=intrinsics,
+            max_time_gap=max_time_gap,
+        )
+    else:
+        images = splatting_sources.of_file(simple_texture, mesh, count, reference_size)
+    if camera is None:
+        camera = splatting_sources.view_of(images, eye, target, up, fov, size, near, far)
+    scene = splatting.Scene(
+        images=images,
+        camera=camera,
+        light=None if light is None else Light(direction=light),
+        background=(1.0, 1.0, 1.0) if msr is None and rgbd is None else (0.0, 0.0, 0.0),
+    )
+    params = _params(
+        scene,
+        law,
+        min_width=min_width,
+        max_width=max_width,
+        shape=shape.value,
+        footprint=footprint,
+        low_pass=low_pass,
+        cutoff=cutoff,
+        depth_tolerance=depth_tolerance,
+        method=method.value,
+    )
+    return Described(scene, params, {}, photograph)
+
+
+@beside(read)
+def command(
+    out: options.Out,
     report: Annotated[
         bool, typer.Option("--report", help="Print coverage, holes, overdraw, and the difference to the photograph.")
     ] = False,
@@ -162,66 +216,24 @@ def command(
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
     case: own_case.Folder = None,
+    **described: Any,
 ) -> None:
     """Splatting of reference images with depth (Lee & Park 2006) from a new view: of photographs, files, or a mesh."""
-    splatting_sources.check(msr, rgbd, simple_texture, mesh, cameras, view, pose, eye)
     with progress(3) as step:
         step("reading references")
         from ibr_ref import io, splatting
-        from ibr_ref.scene import Light
 
         io.check_image_writable(out, bits)
         own_case.check_writable(case)
         for path in (stages, point_cloud):
             if path is not None:
                 io.check_writable(path)
-        camera, photograph = None, None
-        if msr is not None:
-            assert view is not None
-            images, camera, photograph = splatting_sources.from_msr(msr, cameras, view, frame, near, far, report)
-        elif rgbd is not None:
-            images, camera, photograph = splatting_sources.from_rgbd(
-                rgbd,
-                cameras,
-                view,
-                pose,
-                (near, far),
-                report,
-                format=None if format_.value == "auto" else format_.value,
-                depth_scale=depth_scale,
-                convention=convention,
-                poses=poses,
-                along=along,
-                pixel_centers=pixel_centers,
-                intrinsics=intrinsics,
-                max_time_gap=max_time_gap,
-            )
-        else:
-            images = splatting_sources.of_file(simple_texture, mesh, count, reference_size)
-        if camera is None:
-            camera = splatting_sources.view_of(images, eye, target, up, fov, size, near, far)
+        scene, params, _, read_photograph = read(**described)
+        photograph = read_photograph() if report else None
         if depth_set is not None:
-            io.write_depth_set(depth_set, images, bits=bits)
+            io.write_depth_set(depth_set, scene.images, bits=bits)
         if point_cloud is not None:
-            io.write_point_cloud(point_cloud, images)
-        scene = splatting.Scene(
-            images=images,
-            camera=camera,
-            light=None if light is None else Light(direction=light),
-            background=(1.0, 1.0, 1.0) if msr is None and rgbd is None else (0.0, 0.0, 0.0),
-        )
-        params = _params(
-            scene,
-            law,
-            min_width=min_width,
-            max_width=max_width,
-            shape=shape.value,
-            footprint=footprint,
-            low_pass=low_pass,
-            cutoff=cutoff,
-            depth_tolerance=depth_tolerance,
-            method=method.value,
-        )
+            io.write_point_cloud(point_cloud, scene.images)
         step("rendering")
         picture = splatting.render(scene, params, stages=report or stages is not None)
         step("writing")

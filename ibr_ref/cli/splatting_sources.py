@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -37,16 +37,19 @@ def check(
         raise typer.BadParameter(f"--rgbd needs --view ({which}), --pose or --eye")
 
 
+Photograph = Callable[[], "DepthImage | None"]
+"""Reads what was taken from the view, if there is such a picture."""
+
+
+def no_photograph() -> DepthImage | None:
+    """Of a view that no camera had."""
+    return None
+
+
 def from_msr(
-    folder: Path,
-    cameras: options.Cameras,
-    view: options.View,
-    frame: int,
-    near: float | None,
-    far: float | None,
-    report: bool,
-) -> tuple[Sequence[DepthImage], Camera, DepthImage | None]:
-    """References, the view, and for a report the photograph that was taken from there, if there is one."""
+    folder: Path, cameras: options.Cameras, view: options.View, frame: int, near: float | None, far: float | None
+) -> tuple[Sequence[DepthImage], Camera, Photograph]:
+    """References, the view, and the photograph that was taken from there."""
     from ibr_ref import io
     from ibr_ref.scene import Camera
 
@@ -55,16 +58,20 @@ def from_msr(
     size = images[0].camera.width, images[0].camera.height
     first, *rest = io.read_msr_cameras(folder, ends, *size, near, far)
     if rest:
-        return images, Camera.between(first, rest[0], view.fraction), None
-    if not (report and io.has_msr_picture(folder, frame, view.first)):
-        return images, first, None
-    (photograph,) = io.read_msr(folder, frame, ends, near, far)
-    found = photograph.camera.width, photograph.camera.height
-    if found != size:
-        raise ValueError(
-            f"{folder}: found {found[0]} x {found[1]} pixels from camera {view.first}, allowed: {size[0]} x {size[1]} as "
-            f"from camera {cameras[0]}, to be compared"
-        )
+        return images, Camera.between(first, rest[0], view.fraction), no_photograph
+
+    def photograph() -> DepthImage | None:
+        if not io.has_msr_picture(folder, frame, view.first):
+            return None
+        (taken,) = io.read_msr(folder, frame, ends, near, far)
+        found = taken.camera.width, taken.camera.height
+        if found != size:
+            raise ValueError(
+                f"{folder}: found {found[0]} x {found[1]} pixels from camera {view.first}, allowed: {size[0]} x {size[1]} "
+                f"as from camera {cameras[0]}, to be compared"
+            )
+        return taken
+
     return images, first, photograph
 
 
@@ -74,10 +81,9 @@ def from_rgbd(
     view: options.View | None,
     pose: options.Numbers | None,
     planes: tuple[float | None, float | None],
-    report: bool,
     **says: Any,
-) -> tuple[Sequence[DepthImage], Camera | None, DepthImage | None]:
-    """References, the view if it is that of a picture or a pose, and for a report the picture that was taken there.
+) -> tuple[Sequence[DepthImage], Camera | None, Photograph]:
+    """References, the view if it is that of a picture or a pose, and the picture that was taken there.
 
     says: the format and the options of `io.read_depth_set`.
     """
@@ -88,7 +94,7 @@ def from_rgbd(
 
     images = io.read_depth_set(folder, views=cameras or None, **says)
     if view is None and pose is None:
-        return images, None, None
+        return images, None, no_photograph
     ends = [*cameras[:1]] or [0]
     if view is not None:
         ends = [view.first] if view.second is None else [view.first, view.second]
@@ -96,12 +102,18 @@ def from_rgbd(
     camera, *rest = io.read_depth_cameras(folder, views=ends, pose=matrix, **says)
     if rest and view is not None:
         camera = Camera.between(camera, rest[0], view.fraction)
-    photograph = None
-    if report and pose is None and not rest:
-        with suppress(FileNotFoundError):  # a view needs no depth map of its own
-            (photograph,) = io.read_depth_set(folder, views=ends, **says)
     points = np.concatenate([image.points for image in images])
-    return images, camera.fitted(points, near=planes[0], far=planes[1]), photograph
+    camera = camera.fitted(points, near=planes[0], far=planes[1])
+    if pose is not None or rest:
+        return images, camera, no_photograph
+
+    def photograph() -> DepthImage | None:
+        with suppress(FileNotFoundError):  # a view needs no depth map of its own
+            (taken,) = io.read_depth_set(folder, views=ends, **says)
+            return taken
+        return None
+
+    return images, camera, photograph
 
 
 def of_file(simple_texture: Path | None, mesh: Path | None, count: int, size: int) -> Sequence[DepthImage]:

@@ -1,14 +1,14 @@
 """Which options go with which: one table for all commands.
 
 It says for every parameter of every command beside which others it is read; `command.Command` refuses it beside others.
-Those of `render` are said beside the commands, `goes_with` there. Which method reads which field of its `Params` is said by
-the method, in `READ_BY`.
+Those of `render` and `view` are said beside the commands, `goes_with` there. Which method reads which field of its
+`Params` is said by the method, in `READ_BY`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from ibr_ref import methods
@@ -47,11 +47,19 @@ def rules(command: str) -> dict[str, Beside]:
 
 
 def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
+    view = methods.Room("ibr_ref.cli.view").open()
     return {
         **{f"render {m.name}": m.command.open().goes_with for m in methods.records() if m.command is not None},
+        **{
+            f"sweep {m.name}": m.sweep_command.open().goes_with
+            for m in methods.records()
+            if m.sweep_command is not None
+        },
         "export": _export,
         "check": _check,
         "hunt": lambda: always("port", "method", "seconds", "seed", "out", "device"),
+        "draw": lambda: always("case", "folder", "with_", "adapter"),
+        **{f"view {name}": partial(view.goes_with, name) for name in view.commands()},
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),

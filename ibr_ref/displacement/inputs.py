@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ibr_ref.scene import BasePolygon, Camera, Light, checks
+from ibr_ref.scene import BasePolygon, Camera, Light, checks, limits
 from ibr_ref.scene.documented import documented
+from ibr_ref.scene.limits import Limit, Real, Whole, Word
 from ibr_ref.searches import SEARCHES, read_by
 
 METHODS = tuple(SEARCHES)
@@ -32,6 +33,23 @@ MOST_STEPS = 2**16
 
 MOST_VOXELS = 2**26
 """Of a distance texture: half a gigabyte."""
+
+LIMITS: dict[str, Limit] = {
+    "linear_steps": Whole(1, MOST_LATTICE),
+    "binary_steps": Whole(0, 24),
+    "steep_threshold": Real(),
+    "interval": Word(INTERVALS),
+    "faces": Word(FACES),
+    "depth": Word(DEPTHS),
+    "method": Word(METHODS),
+    "shadow_steps": Whole(0, 2**20),
+    "shadow_bias": Real(low=0.0),
+    "lod_bias": Real(low=0.0, high=32.0),
+    "min_steps": Whole(1, MOST_STEPS),
+    "max_steps": Whole(1, MOST_STEPS),
+    "distance_layers": Whole(1, 1024),
+}
+"""Of the fields of `Params`, each by itself."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,22 +112,11 @@ class Params:
     """Layers of the distance texture of `"donnelly"`, 1 to 1024; at most 2^26 voxels with the height map's texels."""
 
     def __post_init__(self) -> None:
-        set_field = object.__setattr__
-        set_field(self, "linear_steps", checks.whole("linear_steps", self.linear_steps, low=1, high=MOST_LATTICE))
-        set_field(self, "binary_steps", checks.whole("binary_steps", self.binary_steps, low=0, high=24))
+        limits.check(self, LIMITS)
         if self.linear_steps << self.binary_steps > MOST_LATTICE:
             raise checks.reject("linear_steps * 2^binary_steps", self.linear_steps << self.binary_steps, "<= 2^24")
-        set_field(self, "steep_threshold", checks.number("steep_threshold", self.steep_threshold))
-        for name, allowed in (("interval", INTERVALS), ("faces", FACES), ("depth", DEPTHS), ("method", METHODS)):
-            checks.choice(name, getattr(self, name), allowed)
-        set_field(self, "shadow_steps", checks.whole("shadow_steps", self.shadow_steps, low=0, high=2**20))
-        set_field(self, "shadow_bias", checks.number("shadow_bias", self.shadow_bias, low=0.0))
-        set_field(self, "lod_bias", checks.number("lod_bias", self.lod_bias, low=0.0, high=32.0))
-        set_field(self, "min_steps", checks.whole("min_steps", self.min_steps, low=1, high=MOST_STEPS))
-        set_field(self, "max_steps", checks.whole("max_steps", self.max_steps, low=1, high=MOST_STEPS))
         if self.min_steps > self.max_steps:
             raise checks.reject("min_steps", self.min_steps, f"<= max_steps = {self.max_steps}")
-        set_field(self, "distance_layers", checks.whole("distance_layers", self.distance_layers, low=1, high=1024))
         if self.interval == "volume" and self.faces != "auxiliary":
             raise checks.reject("faces", self.faces, 'auxiliary (with interval="volume")')
 

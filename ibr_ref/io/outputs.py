@@ -24,6 +24,35 @@ _DESCRIPTORS = re.compile(r"/dev/fd|/proc/(self|[0-9]+)/fd")
 _MOST_LINKS = 40
 """As Linux has it."""
 
+_unfinished: set[Path] = set()
+"""What is being written, under its temporary name."""
+
+
+@contextmanager
+def unfinished(place: Path) -> Iterator[None]:
+    """A file or folder under a temporary name: removed if the block ends early, or the process (`remove_unfinished`)."""
+    _unfinished.add(place)
+    try:
+        yield
+    except BaseException:
+        _remove(place)
+        raise
+    finally:
+        _unfinished.discard(place)
+
+
+def remove_unfinished() -> None:
+    """Remove all that is half written, by any thread: the process is about to end."""
+    for place in list(_unfinished):
+        _remove(place)
+
+
+def _remove(place: Path) -> None:
+    if place.is_dir():
+        shutil.rmtree(place, ignore_errors=True)
+    else:
+        place.unlink(missing_ok=True)
+
 
 @contextmanager
 def atomic(path: str | PathLike[str]) -> Iterator[BinaryIO]:
@@ -135,16 +164,13 @@ def _place(path: str | PathLike[str]) -> Path:
 @contextmanager
 def _beside(place: Path) -> Iterator[BinaryIO]:
     handle, name = tempfile.mkstemp(prefix=f".{place.name[:60]}.", dir=place.parent)
-    try:
+    with unfinished(Path(name)):
         with os.fdopen(handle, "wb") as file:
             yield cast(BinaryIO, file)
         umask = os.umask(0)
         os.umask(umask)
         os.chmod(name, 0o666 & ~umask)
         os.replace(name, place)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
 
 
 def _copy(file: BinaryIO, path: str | PathLike[str], descriptor: int | None) -> None:

@@ -30,14 +30,14 @@ class _Meanings:
 
     def __get__(self, instance: object, owner: type | None = None) -> str:
         lines = [inspect.cleandoc(self.own), ""]
-        for name, meaning in _meanings(self.kind).items():
+        for name, meaning in meanings(self.kind).items():
             readers = self.read_by.get(name)
             who = f" Read by {self.choice} {' | '.join(readers)} alone." if readers else ""
             lines.append(f"{name}: {meaning}{who}")
         return "\n".join(lines)
 
 
-def _meanings(kind: type) -> dict[str, str]:
+def meanings(kind: type) -> dict[str, str]:
     """By field what the string under it says, on one line; empty where there is no source."""
     try:
         tree = ast.parse(inspect.getsource(sys.modules[kind.__module__]))

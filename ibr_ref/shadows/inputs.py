@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.scene import AreaLight, Camera, Mesh, checks
+from ibr_ref.scene import AreaLight, Camera, Mesh, checks, limits
 from ibr_ref.scene.documented import documented
+from ibr_ref.scene.limits import Flag, Limit, Real, Whole, Word
 from ibr_ref.scene.vectors import cross, dot, length
 from ibr_ref.shadows.maps import MOST_SAMPLES
 
@@ -34,6 +36,36 @@ MOST_CONTROLS = 256
 """Largest R and C."""
 MOST_GRID_BYTES = 2**32
 """Of all maps of a grid."""
+
+
+class Mover(NamedTuple):
+    """A caster and where it is."""
+
+    mesh: Mesh
+    axes: NDArray[np.float64]
+    """(2, 3)."""
+    offset: NDArray[np.float64]
+    """(2,)."""
+
+
+LIMITS: dict[str, Limit] = {
+    "map_size": Whole(8, LARGEST_MAP),
+    "rows": Whole(2, MOST_CONTROLS),
+    "columns": Whole(2, MOST_CONTROLS),
+    "content": Word(CONTENTS),
+    "map_samples": Whole(1, MOST_SAMPLES),
+    "pcf": Flag(),
+    "bias": Real(low=0.0),
+    "policy": Word(POLICIES),
+    "interpolation": Word(INTERPOLATIONS),
+    "accumulation": Word(ACCUMULATIONS),
+    "method": Word(METHODS),
+    "grid_size": Whole(2, 1024),
+    "grid_mix": Flag(),
+    "grid_storage": Word(STORAGES),
+    "grid_threshold": Real(low=0.0, high=1.0),
+}
+"""Of the fields of `Params`, each by itself, but for `quantize` and `light_samples`."""
 
 _IN_PLANE = 1e-9
 """Distance from the plane of the offset axes, as a share of the vector's length, that is taken for rounding."""
@@ -87,6 +119,11 @@ class Scene:
     def axes(self) -> NDArray[np.float64]:
         """offset_axes as an array."""
         return np.asarray(self.offset_axes)
+
+    @property
+    def movers(self) -> tuple[Mover, ...]:
+        """What moves: the caster alone."""
+        return (Mover(self.caster, self.axes, np.asarray(self.offset)),)
 
     def _check_offset(self) -> None:
         (x0, x1), (y0, y1) = np.asarray(self.offset_range).tolist()
@@ -183,35 +220,10 @@ class Params:
     """Wavelet coefficients below it in magnitude are dropped; in [0, 1]."""
 
     def __post_init__(self) -> None:
-        set_field = object.__setattr__
-        wholes = {
-            "map_size": (8, LARGEST_MAP),
-            "rows": (2, MOST_CONTROLS),
-            "columns": (2, MOST_CONTROLS),
-            "map_samples": (1, MOST_SAMPLES),
-            "grid_size": (2, 1024),
-        }
-        for name, (low, high) in wholes.items():
-            set_field(self, name, checks.whole(name, getattr(self, name), low=low, high=high))
-        words = {
-            "content": CONTENTS,
-            "policy": POLICIES,
-            "interpolation": INTERPOLATIONS,
-            "accumulation": ACCUMULATIONS,
-            "method": METHODS,
-            "grid_storage": STORAGES,
-        }
-        for name, allowed in words.items():
-            checks.choice(name, getattr(self, name), allowed)
-        for name in ("pcf", "grid_mix"):
-            if not isinstance(getattr(self, name), (bool, np.bool_)):
-                raise checks.reject(name, getattr(self, name), "True | False")
-            set_field(self, name, bool(getattr(self, name)))
+        limits.check(self, LIMITS)
         if self.quantize is not None:
-            set_field(self, "quantize", _bits(self.quantize))
-        set_field(self, "bias", checks.number("bias", self.bias, low=0.0))
-        set_field(self, "grid_threshold", checks.number("grid_threshold", self.grid_threshold, low=0.0, high=1.0))
-        set_field(self, "light_samples", _samples(self.light_samples))
+            object.__setattr__(self, "quantize", _bits(self.quantize))
+        object.__setattr__(self, "light_samples", _samples(self.light_samples))
         self._check_sizes()
 
     def _check_sizes(self) -> None:

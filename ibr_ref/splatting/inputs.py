@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ibr_ref.pipeline.ellipses import MOST_CUTOFF
-from ibr_ref.scene import Camera, DepthImage, Light, checks
+from ibr_ref.scene import Camera, DepthImage, Light, checks, limits
 from ibr_ref.scene.documented import documented
+from ibr_ref.scene.limits import Limit, Real, Whole, Word
 
 SHAPES = ("square", "disc", "ellipse")
 METHODS = ("shader", "software")
@@ -25,6 +26,23 @@ MOST_POINTS = 2**31 - 1
 
 WIDEST = 2.0**20
 """Largest width of a splat, pixels."""
+
+LIMITS: dict[str, Limit] = {
+    "alpha": Real(above=0.0),
+    "beta": Real(),
+    "gamma": Real(),
+    "delta": Real(),
+    "min_width": Real(low=0.0, high=WIDEST),
+    "max_width": Real(low=0.0, high=WIDEST),
+    "shape": Word(SHAPES),
+    "footprint": Real(above=0.0, high=8.0),
+    "low_pass": Real(low=0.1, high=8.0),
+    "cutoff": Real(low=1.0, high=MOST_CUTOFF),
+    "depth_tolerance": Real(low=0.0, high=1.0),
+    "method": Word(METHODS),
+    "max_atlas_size": Whole(1, 65536),
+}
+"""Of the fields of `Params`, each by itself."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,20 +116,9 @@ class Params:
     """Pixels a side of each of the atlas' four pages."""
 
     def __post_init__(self) -> None:
-        set_field = object.__setattr__
-        set_field(self, "alpha", checks.number("alpha", self.alpha, above=0.0))
-        for name in ("beta", "gamma", "delta"):
-            set_field(self, name, checks.number(name, getattr(self, name)))
-        set_field(self, "min_width", checks.number("min_width", self.min_width, low=0.0, high=WIDEST))
-        set_field(self, "max_width", checks.number("max_width", self.max_width, low=self.min_width, high=WIDEST))
-        checks.choice("shape", self.shape, SHAPES)
-        set_field(self, "footprint", checks.number("footprint", self.footprint, above=0.0, high=8.0))
-        set_field(self, "low_pass", checks.number("low_pass", self.low_pass, low=0.1, high=8.0))
-        set_field(self, "cutoff", checks.number("cutoff", self.cutoff, low=1.0, high=MOST_CUTOFF))
-        set_field(self, "depth_tolerance", checks.number("depth_tolerance", self.depth_tolerance, low=0.0, high=1.0))
-        checks.choice("method", self.method, METHODS)
+        limits.check(self, LIMITS)
+        checks.number("max_width", self.max_width, low=self.min_width)
         self._check_ellipses()
-        set_field(self, "max_atlas_size", checks.whole("max_atlas_size", self.max_atlas_size, low=1, high=65536))
 
     def _check_ellipses(self) -> None:
         """What the choice of ellipses needs of the other fields."""

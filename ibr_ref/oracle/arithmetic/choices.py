@@ -114,6 +114,7 @@ class Choices(Decisions):
 
     def between(self, x: Number, low: Any, high: Any) -> Number:
         """What is known to lie between two ends, where that says much more than its own bound; the value stays if it may."""
+        low, high = self.of(low).low, self.of(high).high
         with np.errstate(invalid="ignore"):
             inside = (low <= x.value) & (x.value <= high)
             value = np.where(inside, x.value, 0.5 * (low + high))
@@ -147,6 +148,11 @@ class Choices(Decisions):
     def missing(self, x: Any) -> Any:
         """Which are no numbers."""
         return np.isnan(self.of(x).value)
+
+    def settled(self, x: Any, *others: Any) -> Number:
+        """With the symbols that others have, the rest in its error: what a loop carries on, or it drags on all of them."""
+        known = {name for other in others for name in self.of(other).slopes}
+        return self.of(x).absorbed(tuple(known))
 
     def in_lanes(self, x: Any, like: Any) -> Number:
         """A number of the whole case for each row of `like`: what is decided of it is decided lane by lane, both ways."""

@@ -117,6 +117,14 @@ class Arithmetic:
         """What is decided to be >= `least` (`up`), or <= -`least`."""
         return x
 
+    def between(self, x: Any, low: Any, high: Any) -> Any:
+        """What is known to lie between two ends."""
+        return x
+
+    def settled(self, x: Any, *others: Any) -> Any:
+        """What a loop carries on."""
+        return x
+
     def in_lanes(self, x: Any, like: Any) -> Any:
         """A number of the whole case for each row of `like`."""
         return np.broadcast_to(x, np.shape(like))

@@ -38,7 +38,7 @@ class Case:
 
     def __post_init__(self) -> None:
         """Raise ValueError for what no referee judges, the systems that the papers compare with, and for a pow(0, 0)."""
-        object.__setattr__(self, "method", self.method or _method_of(self.scene))
+        object.__setattr__(self, "method", self.method or method_of(self.scene))
         object.__setattr__(self, "name", self.name or f"{self.method}-own")
         checks.choice("method", self.method, methods.names())
         light = getattr(self.scene, "light", None)
@@ -59,6 +59,11 @@ class Case:
 
         return power.undecided(self)
 
+    @property
+    def system(self) -> str:
+        """Which of those that its method's referee judges."""
+        return str(getattr(self.params, methods.named(self.method).judged[0]))
+
     def draw(self, *, stages: bool) -> Frame:
         """What the reference draws; without stages the same picture and depth sooner."""
         render = methods.named(self.method).package.open().render
@@ -67,7 +72,7 @@ class Case:
         return frame
 
 
-def _method_of(scene: Any) -> str:
+def method_of(scene: Any) -> str:
     """The method whose Scene it is; of those that are imported, as that of a scene is."""
     for method in methods.records():
         if method.package.partition(":")[0] in sys.modules and isinstance(scene, method.package.open().Scene):

@@ -17,13 +17,15 @@ class Bugs:
         self.stage = stage
         self.mutants: list[Mutant] = []
 
-    def add(self, name: str, *, small: bool = False, survives: str = "", hidden: str = "") -> Callable[[Kind], Kind]:
+    def add(
+        self, name: str, *, small: bool = False, survives: str = "", hidden: str = "", only: tuple[str, ...] = ()
+    ) -> Callable[[Kind], Kind]:
         """Enter the decorated class; the options are those of `Mutant`."""
 
         def enter(kind: Kind) -> Kind:
             fault = " ".join((kind.__doc__ or "").split())
             port = self.port(kind)
-            self.mutants.append(Mutant(name, fault, self.stage, port, small=small, survives=survives, hidden=hidden))
+            self.mutants.append(Mutant(name, fault, self.stage, port, small, survives, hidden, only))
             return kind
 
         return enter

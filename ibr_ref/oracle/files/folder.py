@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 
+from ibr_ref.io.outputs import unfinished
 from ibr_ref.oracle.files.problem import UnusableError
 from ibr_ref.scene.checks import named
 
@@ -67,23 +68,20 @@ def atomic_folder(folder: Path) -> Iterator[Path]:
     Missing folders above it are made. Raises OSError with the path where it cannot be made. Whatever ends the block early
     leaves nothing behind but those.
     """
-    made: Path | None = None
     name, folder = named(folder), Path(os.path.realpath(folder))
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         made = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
-        yield made
-        umask = os.umask(0)
-        os.umask(umask)
-        made.chmod(0o777 & ~umask)
-        _take_place(made, folder)
+        with unfinished(made):
+            yield made
+            umask = os.umask(0)
+            os.umask(umask)
+            made.chmod(0o777 & ~umask)
+            _take_place(made, folder)
     except OSError as error:
         if error.strerror:
             raise OSError(f"{name}: cannot be written ({error.strerror})") from None
         raise
-    finally:
-        if made is not None:
-            shutil.rmtree(made, ignore_errors=True)
 
 
 def _take_place(made: Path, folder: Path) -> None:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.programs.program import Bools, Floats, Ints, Program, Vector
-from ibr_ref.scene.checks import reject
 
 __all__ = ["Bools", "Case", "Floats", "Ints", "Patch", "Vector"]
 
@@ -41,13 +40,11 @@ class Patch:
 class Case(Program):
     """The uniforms and textures of a scene, and operations on vectors."""
 
-    def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
-        """A displacement scene and its parameters; `inputs` is not used: the scene holds everything.
+    floor: ClassVar[float] = 0.0
+    """h of the volume's bottom."""
 
-        Raises ValueError for the systems that the paper compares with: they are no part of this port.
-        """
-        if params.method != "protruded":
-            raise reject("method", params.method, "protruded")
+    def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
+        """A displacement scene and its parameters; `inputs` is not used: the scene holds everything."""
         self.width: int = scene.camera.width
         self.height: int = scene.camera.height
         super().__init__(scene, params, policy, inputs)
@@ -64,6 +61,10 @@ class Case(Program):
     def upload(self, vector: Floats) -> Vector:
         """A vector in a uniform buffer."""
         return list(self.do.number(vector))
+
+    def above_floor(self, h: Floats) -> Floats:
+        """Heights above the volume's bottom."""
+        return self.do.subtract(h, self.floor) if self.floor else h
 
     def multiply_add(self, a: Floats, b: Floats, c: Floats) -> Floats:
         """A b + c."""

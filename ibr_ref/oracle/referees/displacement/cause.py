@@ -38,7 +38,10 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
         return stages
 
     inquiry = Inquiry(
-        mutants=MUTANTS, arrays={**ARRAYS, "resolve": ()}, replay=replay, sampled=("march", "shade", "resolve")
+        mutants=[mutant for mutant in MUTANTS if mutant.applies(case.system)],
+        arrays={**ARRAYS, "resolve": ()},
+        replay=replay,
+        sampled=("march", "shade", "resolve"),
     )
     hidden = inquiry.hidden_in(wrong.stage, handed)
     if wrong.stage == "shade" and "color" in wrong.arrays:  # by the depth test another polygon's are shown

@@ -240,7 +240,7 @@ def _ports_hits(port: Port, candidates: Callable[[], Points]) -> Hits:
     zero = np.zeros(count, np.int64)
     none = Number(port.model.machine, np.zeros(count))
     face_depth = none
-    if not port.model.program.right("window_depth") or port.case.params.depth == "polygon":
+    if not port.model.program.right("window_depth") or not port.model.program.displaces:
         face_depth = _face_depth(candidates(), pixel, polygon[pixel], None)
     return _at(
         port,

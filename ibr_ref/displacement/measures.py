@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.array_types import Floats
-from ibr_ref.displacement import Params, Scene, render
+from ibr_ref.displacement.inputs import Params, Scene
+from ibr_ref.displacement.render import render
 from ibr_ref.io import Frame
-from ibr_ref.reproduce.displacement.systems import System
 from ibr_ref.scene import BasePolygon
+from ibr_ref.searches import SEARCHES
 
 Mask = NDArray[np.bool_]
 
@@ -36,12 +38,22 @@ class Truths:
 
     @classmethod
     def of(cls, scene: Scene) -> Truths:
-        """By `exact`, and by the maximum mipmap, whose hits the tests hold against rational numbers."""
-        return cls(render(scene, EXACT), render(scene, Params(method="maximum_mipmap")))
+        """Both."""
+        return cls(truth(scene, sinks=False), truth(scene, sinks=True))
 
-    def of_system(self, system: System) -> Frame:
-        """What the system would show if its search were perfect."""
-        return self.risen if system.rises else self.sunken
+    def of_method(self, params: Params) -> Frame:
+        """What a system would show if its search were perfect."""
+        return self.sunken if SEARCHES[params.method].sinks else self.risen
+
+
+def truth(scene: Scene, sinks: bool) -> Frame:
+    """By `exact`, or, below the polygon, by the maximum mipmap, whose hits the tests hold against rational numbers."""
+    return render(scene, Params(method="maximum_mipmap") if sinks else EXACT)
+
+
+def number(value: float) -> float | None:
+    """A measure; None for NaN, where there was nothing to measure."""
+    return None if math.isnan(value) else value
 
 
 def polygon_of(scene: Scene) -> BasePolygon:
@@ -114,13 +126,13 @@ def distances(scene: Scene, truth: Frame, frame: Frame) -> tuple[float, float]:
 
 
 def drift(scene: Scene, frame: Frame) -> tuple[float, float]:
-    """How far pixels that show the ground are from where that ground is: mean and largest, pixels."""
+    """How far pixels that show the ground are from where that ground is: mean and largest, pixels; NaN without any."""
     ground = heights_at(scene, frame, radius=2) == 0.0
     hit = frame.stages["march.hit"]
     true = window(scene, world(scene, np.concatenate([hit[..., :2], np.zeros((*ground.shape, 1))], axis=-1)))
     row, column = np.indices(ground.shape)
     away = np.hypot(true[..., 0] - (column + 0.5), true[..., 1] - (row + 0.5))[ground]
-    return float(away.mean()), float(away.max())
+    return (float(away.mean()), float(away.max())) if len(away) else (math.nan, math.nan)
 
 
 def overlap(a: Mask, b: Mask) -> float:
@@ -160,21 +172,26 @@ def texture_coordinates(scene: Scene, frame: Frame) -> Floats:
 
 
 def wall_texture(scene: Scene, frame: Frame, wall: Mask) -> tuple[float, float]:
-    """Down the walls' pixels: texels passed from one to the next, mean, and the share that passes next to none."""
+    """Down the walls' pixels: texels passed from one to the next, median, and the share that passes next to none; or NaN."""
     place = texture_coordinates(scene, frame)
     passed = np.hypot(*np.moveaxis(place[1:] - place[:-1], -1, 0))[wall[1:] & wall[:-1]]
     passed = passed[np.isfinite(passed)]
-    return float(np.median(passed)), float((passed < SMEARED).mean())
+    return (float(np.median(passed)), float((passed < SMEARED).mean())) if len(passed) else (math.nan, math.nan)
 
 
-def fetches(system: System, frame: Frame) -> float:
-    """Texture fetches of the search, a fragment that is shown or discarded alone; the shader's, that skips nothing."""
+def fetches(params: Params, frame: Frame) -> float:
+    """Texture fetches of the search, a fragment that is shown or discarded alone; the shader's, that skips nothing.
+
+    NaN where no face is drawn.
+    """
     stages: dict[str, Any] = frame.stages
     covered = stages["raster.face"] >= 0
+    if not covered.any():
+        return math.nan
     if "march.fetches" in stages:
         return float(stages["march.fetches"][covered].mean())
-    if system.params.method == "texture":
+    if params.method == "texture":
         return 0.0
-    steps, halvings = system.params.linear_steps, system.params.binary_steps
+    steps, halvings = params.linear_steps, params.binary_steps
     stop = stages["march.linear_index"][covered]
     return float(np.where(stop < 0, steps + 1, stop + 1 + halvings * (stop > 0)).mean())
