@@ -85,7 +85,7 @@ def _own(
     source: str,
     judged: tuple[str, tuple[str, ...]],
     inputs: tuple[str, ...] = (),
-    plain_port: str = "ports",
+    plain_port: str = "faults",
 ) -> Method:
     """A method of this package, whose rooms are where those of all its methods are.
 
@@ -121,9 +121,9 @@ _JUDGED_SEARCHES = ("protruded", "relief", "welsh", "mcguire", "tatarchuk", "con
 
 # fmt: off
 _METHODS = {method.name: method for method in (
-    _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", _JUDGED_SEARCHES), (), "faults"),
+    _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", _JUDGED_SEARCHES)),
     _own("splatting", 2, "Splatting of depth images", "Lee & Park 2006", ("shape", ("square", "disc")), ("normals",)),
-    _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", ("warp", "direct")), ("maps",)),
+    _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", ("warp", "direct")), ("maps",), "ports"),
 )}
 # fmt: on
 

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ibr_ref.oracle.faults.displacement.bugs import Bugs
+from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Patch
 from ibr_ref.oracle.programs.displacement.searches.cone import Cone, RelaxedCone
 

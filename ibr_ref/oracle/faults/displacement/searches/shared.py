@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ibr_ref.oracle.faults.displacement.bugs import Bugs
+from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.programs.displacement.case import Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.searches.below import Sunken
