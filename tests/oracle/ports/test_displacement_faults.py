@@ -12,7 +12,7 @@ from ibr_ref import displacement
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.faults.displacement import MUTANTS, VARIANTS, Port
 from ibr_ref.oracle.faults.kinds import Mutant, Variant
-from ibr_ref.oracle.programs.displacement.searches import PROGRAMS
+from ibr_ref.oracle.programs.displacement import PROGRAMS
 from tests.agreement import Arrays, arrays_of
 from tests.oracle.ports.displacement_scenes import SCENES, SHOWN_IN, USUAL, scene_of
 

@@ -11,6 +11,7 @@ It has no guard band: no corner may come nearer to the eye than that its window 
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, Self
 
 import numpy as np
@@ -19,6 +20,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.programs.displacement.raster import Raster
 from ibr_ref.oracle.programs.displacement.resolve import Drawn, Resolve
 from ibr_ref.oracle.programs.displacement.shade import Shade
+from ibr_ref.scene.checks import choice
 
 
 class Port(Shade, Resolve, Raster):
@@ -28,10 +30,14 @@ class Port(Shade, Resolve, Raster):
     something else overridden, is made one with what that search overrides.
     """
 
+    def __init_subclass__(cls, search: str | None = None) -> None:
+        """search: `Params.method`, of a class that is that search's program."""
+        super().__init_subclass__()
+        if search is not None:
+            PROGRAMS[search] = cls
+
     def __new__(cls, scene: Any, params: Any, *_: Any) -> Self:
         """Raises ValueError for a search that has no program."""
-        from ibr_ref.oracle.programs.displacement.searches import searching  # here: searches are ports
-
         kind: Any = searching(cls, params.method)  # type: ignore[arg-type]  # a class, which can be hashed
         found: Self = super().__new__(kind)
         return found
@@ -52,3 +58,25 @@ class Port(Shade, Resolve, Raster):
             "vertex.patch": np.concatenate(corners),
             **self.resolve(drawn),
         }
+
+
+PROGRAMS: dict[str, type[Port]] = {"protruded": Port}
+"""By `Params.method`; those below the polygon enter themselves."""
+
+
+@cache
+def searching(kind: type[Any], method: str) -> type[Any]:
+    """A kind of port with a search: what the kind overrides comes first, then the search's own.
+
+    Raises ValueError for a search that has no program, and TypeError for a kind that is another search's alone.
+    """
+    choice("method", method, tuple(PROGRAMS))
+    search = PROGRAMS[method]
+    if issubclass(kind, search):
+        return kind
+    if issubclass(search, kind):
+        return search
+    others = [name for name, other in PROGRAMS.items() if issubclass(kind, other) and not issubclass(search, other)]
+    if others:
+        raise TypeError(f"{kind.__name__}: found method = {method!r}, allowed: {' | '.join(others)}")
+    return type(kind.__name__, (kind, search), {"__doc__": kind.__doc__, "__module__": kind.__module__})

@@ -14,7 +14,7 @@ from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.searches.below import Descent, Found
 
 
-class Cone(Descent):
+class Cone(Descent, search="cone"):
     """N steps, each as far as the empty cone over the texel reaches."""
 
     cones: ClassVar[str] = "cone"
@@ -83,7 +83,7 @@ class Cone(Descent):
         return Found(np.full(len(depth), self.params.linear_steps), depth, self.do.in_lanes(0.0, depth))
 
 
-class RelaxedCone(Cone):
+class RelaxedCone(Cone, search="relaxed_cone"):
     """The steps end inside the solid; M halvings of the whole stretch find the way back."""
 
     cones: ClassVar[str] = "relaxed_cone"

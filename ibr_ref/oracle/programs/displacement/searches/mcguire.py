@@ -14,7 +14,7 @@ from ibr_ref.oracle.programs.displacement.searches.below import Found
 from ibr_ref.scene.checks import reject
 
 
-class McGuire(Angled):
+class McGuire(Angled, search="mcguire"):
     """The first of n samples, from d = 0 on, with d >= D."""
 
     def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:

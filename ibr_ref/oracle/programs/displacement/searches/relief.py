@@ -9,7 +9,7 @@ from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.searches.below import Sunken
 
 
-class Relief(Sunken):
+class Relief(Sunken, search="relief"):
     """The protruded search's own lattice, below the polygon."""
 
     def position(self, rays: Rays, index: Ints | int) -> Vector:

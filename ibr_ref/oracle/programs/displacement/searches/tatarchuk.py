@@ -10,7 +10,7 @@ from ibr_ref.oracle.programs.displacement.searches.angled import Angled
 from ibr_ref.oracle.programs.displacement.searches.below import Found
 
 
-class Tatarchuk(Angled):
+class Tatarchuk(Angled, search="tatarchuk"):
     """The first of n samples above the ray, and the crossing with the line from the one before."""
 
     def most_steps(self) -> int:

@@ -13,7 +13,7 @@ from ibr_ref.oracle.programs.displacement.searches.angled import Angled
 from ibr_ref.oracle.programs.displacement.searches.below import Found
 
 
-class Welsh(Angled):
+class Welsh(Angled, search="welsh"):
     """(u, v) = C_uv + H(C) s (U*.w, V*.w), w the unit way to the eye; nothing is displaced."""
 
     floor: ClassVar[float] = 0.0
