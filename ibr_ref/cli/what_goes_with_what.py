@@ -54,6 +54,7 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
         "hunt": lambda: always("port", "method", "seconds", "seed", "out", "device"),
         "draw": lambda: always("case", "folder", "with_", "adapter"),
         "conformance": lambda: always("case", "with_", "adapter", "out"),
+        "probe": lambda: always("case", "drawn", "out"),
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),
