@@ -14,7 +14,7 @@ from typing import Annotated
 import typer
 
 from ibr_ref import methods
-from ibr_ref.cli import bench, check, conformance, demo, draw, export, hunt, method, reproduce, view
+from ibr_ref.cli import bench, check, conformance, demo, draw, export, hunt, method, probe, reproduce, view
 from ibr_ref.cli.command import Command
 from ibr_ref.cli.interruption import CODE, heard
 
@@ -47,6 +47,7 @@ app.command("export", cls=Command, epilog=export.EXAMPLES)(export.command)
 app.command("draw", cls=Command, epilog=draw.EXAMPLES)(draw.command)
 app.command("check", cls=Command, epilog=check.EXAMPLES)(check.command)
 app.command("conformance", cls=Command, epilog=conformance.EXAMPLES)(conformance.command)
+app.command("probe", cls=Command, epilog=probe.EXAMPLES)(probe.command)
 app.command("hunt", cls=Command, epilog=hunt.EXAMPLES)(hunt.command)
 app.command("bench", cls=Command, epilog=bench.EXAMPLES)(bench.command)
 app.command("reproduce", cls=Command, epilog=reproduce.EXAMPLES)(reproduce.command)

@@ -61,6 +61,7 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
         "draw": lambda: always("case", "folder", "with_", "adapter"),
         **{f"view {name}": partial(view.goes_with, name) for name in view.commands()},
         "conformance": lambda: always("case", "with_", "adapter", "out"),
+        "probe": lambda: always("case", "drawn", "out"),
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),

@@ -15,6 +15,8 @@ from ibr_ref.scene import checks
 
 ALL = "all"
 """Every built-in case."""
+PROBE = "probe"
+"""The case from which devices are measured; it is none of all."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,10 @@ def _chosen(word: str) -> Sequence[Choice]:
         folder = Path(word)
         found = [folder] if holds_case(folder) else [each for each in inside(folder) if holds_case(each)]
         return [_own(each) for each in found]
+    if word == PROBE:
+        from ibr_ref.oracle.probe import probe_case
+
+        return [Choice(PROBE, None, probe_case)]
     return [
         Choice(name, None, partial(cases.build, name))
         for name in cases.names()

@@ -88,7 +88,14 @@ def _glsl(adapter: str | None) -> Drawer:
         raise ValueError(
             f"adapter: found {adapter!r}, allowed: a driver of OpenGL 4.5 that is there, as {device.renderer}"
         )
-    return Drawer("glsl", device.renderer, {"profile": "gl"}, _of_given("glsl", device))
+    declares = _opengl(int(device.ctx.info["GL_SUBPIXEL_BITS"]))
+    return Drawer("glsl", device.renderer, declares, _of_given("glsl", device))
+
+
+def _opengl(subpixel_bits: int) -> dict[str, str | int]:
+    """What a driver of OpenGL is that says so many bits: the profile has 8."""
+    coarser = 4 <= subpixel_bits < 8
+    return {"profile": "gl", "subpixel_bits": subpixel_bits} if coarser else {"profile": "gl"}
 
 
 def _wgsl(adapter: str | None) -> Drawer:
@@ -106,8 +113,7 @@ def _webgl(adapter: str | None) -> Drawer:
     from ibr_ref.ports.webgl.browser import Browser
 
     browser = Browser(adapter)
-    bits = {"subpixel_bits": browser.subpixel_bits} if browser.subpixel_bits >= 4 else {}
-    return Drawer("webgl", browser.words, {"profile": "gl", **bits}, browser.draw, browser.close)
+    return Drawer("webgl", browser.words, _opengl(browser.subpixel_bits), browser.draw, browser.close)
 
 
 def _plain(adapter: str | None) -> Drawer:

@@ -82,3 +82,25 @@ def test_a_case_that_fails_has_a_report(run: Run, tmp_path: Path, monkeypatch: p
     assert said.splitlines()[1].startswith(f"FAIL          {CASE}  ")
     assert f'<a href="{CASE}.html">' in (tmp_path / "out" / "index.html").read_text()
     assert (tmp_path / "out" / f"{CASE}.html").is_file()
+
+
+def test_a_device_is_measured_and_taken(run: Run, tmp_path: Path) -> None:
+    """From the probe's export to `check --device`."""
+    assert run("export", "probe", tmp_path / "probe")[0] == 0
+    assert run("draw", tmp_path / "probe", tmp_path / "drawn", "--with", "plain")[0] == 0
+    code, said, _ = run("probe", tmp_path / "probe", tmp_path / "drawn", "--out", tmp_path / "device.json")
+    assert code == 0
+    assert said.splitlines()[0].startswith("subpixel_bits: 8, measured (")
+    assert said.splitlines()[-1] == "clip_z, clip_border, unorm_rounding: assumed, as ieee32 grants them"
+    document = json.loads((tmp_path / "device.json").read_text())
+    assert document == {
+        "profile": "ieee32",
+        "subpixel_bits": 8,
+        "varyings": "snapped",
+        "texel_weight_bits": 0,
+        "filter_result": "float",
+        "depth_format": "float32",
+    }
+    assert run("draw", CASE, tmp_path / "ball", "--with", "plain")[0] == 0
+    assert run("check", CASE, tmp_path / "ball", "--device", tmp_path / "device.json")[0] == 0
+    assert_one_line(run("probe", tmp_path / "ball", tmp_path / "ball"), "case.json")
