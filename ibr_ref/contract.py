@@ -100,5 +100,5 @@ def described(contract: Mapping[str, StageArray], name: str) -> StageArray:
 
 
 def is_margin(name: str) -> bool:
-    """Whether an array says how close a decision was, which ports need not hand in."""
-    return name.endswith("margin")
+    """Whether an array says how close a decision was, or what a search cost: ports need not hand it in."""
+    return name.endswith(("margin", "fetches"))

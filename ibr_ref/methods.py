@@ -9,9 +9,9 @@ that lives in another package. CONTRIBUTING.md says what each room has.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
 
@@ -58,14 +58,18 @@ class Method:
     parameters for."""
     plain_port: Room | None = None
     """Port, VARIANTS, MUTANTS: what `ibr-ref check --self-test` tries the oracle on."""
-    sample_port: Room | None = None
-    """A class, drawn by `python -m ibr_ref.ports`."""
+    sample_ports: Mapping[str, Room] = field(default_factory=dict, hash=False)
+    """Classes by their languages, drawn by `ibr-ref draw`: of a device, with render(scene, params) of an exported case."""
     command: Room | None = None
     """command, read, EXAMPLES and goes_with: `ibr-ref render NAME`."""
     viewable: Room | None = None
     """`viewer.room.Viewable`: `ibr-ref view`."""
     demo: Room | None = None
     """SIZES and NOTE (words of the table), PICTURES (how many) and `pictures()`, of `demo.picture.Picture`."""
+    sweep: Room | None = None
+    """`sweep.rooms.Room`: what is measured, and how."""
+    sweep_command: Room | None = None
+    """command, EXAMPLES and goes_with: `ibr-ref sweep NAME`."""
     bench: Room | None = None
     """`measured(repeat, msr)`, and READS_MSR."""
     reproduction: Room | None = None
@@ -81,7 +85,7 @@ def _own(
     source: str,
     judged: tuple[str, tuple[str, ...]],
     inputs: tuple[str, ...] = (),
-    plain_port: str = "ports",
+    plain_port: str = "faults",
 ) -> Method:
     """A method of this package, whose rooms are where those of all its methods are.
 
@@ -102,20 +106,24 @@ def _own(
         referee=Room(f"ibr_ref.oracle.referees.{name}:{name.capitalize()}Referee"),
         reads=Room(f"ibr_ref.oracle.referees.reads:{name.upper()}"),
         plain_port=Room(f"ibr_ref.oracle.{plain_port}.{name}"),
-        sample_port=Room(f"ibr_ref.ports.glsl.{name}:Port"),
+        sample_ports={language: Room(f"ibr_ref.ports.{language}.{name}:Port") for language in ("glsl", "wgsl")},
         command=Room(f"ibr_ref.cli.{name}"),
         viewable=Room(f"ibr_ref.viewer.{name}:VIEWABLE"),
         demo=Room(f"ibr_ref.demo.{name}"),
+        sweep=Room(f"ibr_ref.sweep.{name}"),
+        sweep_command=Room(f"ibr_ref.cli.sweeps.{name}"),
         bench=Room(f"ibr_ref.bench.{name}"),
         reproduction=Room(f"ibr_ref.reproduce.{name}:REPRODUCTION"),
     )
 
 
+_JUDGED_SEARCHES = ("protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone")
+
 # fmt: off
 _METHODS = {method.name: method for method in (
-    _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", ("protruded",)), (), "faults"),
+    _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", _JUDGED_SEARCHES)),
     _own("splatting", 2, "Splatting of depth images", "Lee & Park 2006", ("shape", ("square", "disc")), ("normals",)),
-    _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", ("warp", "direct")), ("maps",)),
+    _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", ("warp", "direct")), ("maps",), "ports"),
 )}
 # fmt: on
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 NOTEBOOKS = sorted((Path(__file__).parent.parent / "notebooks").glob("*.ipynb"))
-NEEDED = ("ipykernel", "matplotlib", "nbclient", "nbformat")
+NEEDED = ("distributed", "ipykernel", "matplotlib", "nbclient", "nbformat", "pyarrow")
 MISSING = [name for name in NEEDED if importlib.util.find_spec(name) is None]
 
 ASK = """

@@ -14,7 +14,7 @@ from typing import Annotated
 import typer
 
 from ibr_ref import methods
-from ibr_ref.cli import bench, check, demo, export, hunt, method, reproduce, view
+from ibr_ref.cli import bench, check, conformance, demo, draw, export, hunt, method, reproduce, view
 from ibr_ref.cli.command import Command
 from ibr_ref.cli.interruption import CODE, heard
 
@@ -33,6 +33,10 @@ render_app = typer.Typer(no_args_is_help=True, help="Render your own input with 
 for _name, _room in ((each.name, each.command.open()) for each in methods.records() if each.command is not None):
     render_app.command(_name, cls=Command, epilog=_room.EXAMPLES)(_room.command)
 app.add_typer(render_app, name="render")
+sweep_app = typer.Typer(no_args_is_help=True, help="Which parameters are good enough: all combinations, measured.")
+for _name, _room in ((m.name, m.sweep_command.open()) for m in methods.records() if m.sweep_command is not None):
+    sweep_app.command(_name, cls=Command, epilog=_room.EXAMPLES)(_room.command)
+app.add_typer(sweep_app, name="sweep")
 view_app = typer.Typer(no_args_is_help=True, help="Look at what is rendered, or at a case, on a page with sliders.")
 for _name, _view in view.commands().items():
     view_app.command(_name, cls=Command, epilog=view.EXAMPLES)(_view)
@@ -40,7 +44,9 @@ app.add_typer(view_app, name="view")
 app.command("demo", cls=Command, epilog=demo.EXAMPLES)(demo.command)
 app.command("method", cls=Command, epilog=method.EXAMPLES)(method.command)
 app.command("export", cls=Command, epilog=export.EXAMPLES)(export.command)
+app.command("draw", cls=Command, epilog=draw.EXAMPLES)(draw.command)
 app.command("check", cls=Command, epilog=check.EXAMPLES)(check.command)
+app.command("conformance", cls=Command, epilog=conformance.EXAMPLES)(conformance.command)
 app.command("hunt", cls=Command, epilog=hunt.EXAMPLES)(hunt.command)
 app.command("bench", cls=Command, epilog=bench.EXAMPLES)(bench.command)
 app.command("reproduce", cls=Command, epilog=reproduce.EXAMPLES)(reproduce.command)

@@ -15,6 +15,9 @@ from typer.core import TyperCommand
 
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, Others, rules
 
+_NOTHING: tuple[Any, ...] = (None, False, (), [])
+"""Values of parameters that are not there."""
+
 
 class Command(TyperCommand):
     """A command that refuses what nothing would read, before it does anything; its help shows defaults as they are typed."""
@@ -66,7 +69,7 @@ def refuse(wanted: Mapping[str, Beside], params: list[Any], values: Mapping[str,
 def _missed(alternative: Others, values: Mapping[str, Any]) -> Iterator[str]:
     """The parameters that are not as the alternative has them."""
     for name, wanted in alternative.items():
-        there = values[name] is not None and values[name] is not False
+        there = values[name] not in _NOTHING
         value = values[name].value if isinstance(values[name], Enum) else values[name]
         if wanted is GIVEN or wanted is ABSENT:
             if there != (wanted is GIVEN):
@@ -84,13 +87,13 @@ def _flag(param: Any) -> str:
 
 def _shown(value: Any) -> str:
     value = value.value if isinstance(value, Enum) else value
-    text = str(value)
+    text = " ".join(map(str, value)) if type(value) in (list, tuple) else str(value)
     return text if len(text) <= 80 else text[:77] + "..."
 
 
 def _said(flag: str, value: Any) -> str:
     """A parameter and its value as they are, or that it is not there."""
-    if value is None or value is False:
+    if value in _NOTHING:
         return f"without {flag}"
     return f"beside {flag}" if value is True else f"beside {flag} {_shown(value)}"
 

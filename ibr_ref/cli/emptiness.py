@@ -12,19 +12,24 @@ if TYPE_CHECKING:
     from ibr_ref.shadows.culling import Cut
 
 
-def say(frame: Frame, culled: Callable[[], Culled]) -> None:
-    """Why a frame is empty, if it is."""
-    if (frame.depth < 1.0).any():
+def shows(frame: Frame) -> bool:
+    """Whether anything is there."""
+    return bool((frame.depth < 1.0).any())
+
+
+def say(shown: bool, culled: Callable[[], Culled]) -> None:
+    """Why a picture is empty, if nothing is shown."""
+    if shown:
         return
     found = culled()
     why = ", through which no line of sight meets the shape" if found.drawn else ""
     print(f"ibr-ref: nothing is drawn: {found.words()}{why}", file=sys.stderr)
 
 
-def say_cut(cut: Cut) -> None:
-    """What the light's frustum does not hold, if anything."""
+def say_cut(cut: Cut, name: str = "") -> None:
+    """What the light's frustum does not hold, if anything; name: of the caster and the light, where there are several."""
     if cut.cut:
         print(
-            f"ibr-ref: the light's frustum does not hold the caster, whose shadow is cut: {cut.words()}",
+            f"ibr-ref: {name}the light's frustum does not hold the caster, whose shadow is cut: {cut.words()}",
             file=sys.stderr,
         )

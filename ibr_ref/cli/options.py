@@ -104,7 +104,7 @@ _NOT_FINITE = re.compile(r"[+-]?(inf|infinity|nan)", re.ASCII | re.IGNORECASE)
 _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 
 
-def _reads(read: Callable[[str], Value]) -> Callable[[str], Value]:
+def reads(read: Callable[[str], Value]) -> Callable[[str], Value]:
     """A parser for Typer, which hands it the defaults too."""
 
     @wraps(read)
@@ -114,17 +114,18 @@ def _reads(read: Callable[[str], Value]) -> Callable[[str], Value]:
     return parser
 
 
-def _bad(text: str, allowed: str) -> typer.BadParameter:
+def bad(text: str, allowed: str) -> typer.BadParameter:
+    """The error for an option's value."""
     from ibr_ref.scene.checks import one_line  # here: an answer to --help must not wait for NumPy
 
     return typer.BadParameter(f"found {one_line(repr(text))}, allowed: {allowed}")
 
 
-@_reads
+@reads
 def repeats(text: str) -> int:
     """How often something is done: 1 to 1000."""
     if not _WHOLE.fullmatch(text) or not 1 <= int(text) <= 1000:
-        raise _bad(text, "a whole number from 1 to 1000")
+        raise bad(text, "a whole number from 1 to 1000")
     return int(text)
 
 
@@ -133,19 +134,19 @@ def _finite(text: str) -> float:
     return value if math.isfinite(value) else math.nan
 
 
-@_reads
+@reads
 def number(text: str) -> float:
     """One number. Fields say themselves that inf and nan are none."""
     if not (_NUMBER.fullmatch(text) or _NOT_FINITE.fullmatch(text)):
-        raise _bad(text, "a number, such as 0.15")
+        raise bad(text, "a number, such as 0.15")
     return float(text)
 
 
-@_reads
+@reads
 def whole(text: str) -> int:
     """One whole number."""
     if not _WHOLE.fullmatch(text):
-        raise _bad(text, "a whole number, such as 9")
+        raise bad(text, "a whole number, such as 9")
     return int(text)
 
 
@@ -162,77 +163,77 @@ Far = Annotated[
 def _numbers(text: str, count: int, example: str) -> tuple[float, ...]:
     values = tuple(map(_finite, text.split(",")))
     if len(values) != count or any(map(math.isnan, values)):
-        raise _bad(text, f"{count} numbers, such as {example}")
+        raise bad(text, f"{count} numbers, such as {example}")
     return values
 
 
-@_reads
+@reads
 def vector(text: str) -> Vector:
     """X,Y,Z."""
     return Vector(*_numbers(text, 3, "1.0,-2.5,0.3"))
 
 
-@_reads
+@reads
 def pair(text: str) -> Pair:
     """W,H in world units, or the place X,Y of an object."""
     return Pair(*_numbers(text, 2, "0.3,0.2"))
 
 
-@_reads
+@reads
 def one_or_two(text: str) -> Pair:
     """A, which stands for A,A, or A,B."""
     return Pair(*_numbers(text if "," in text else f"{text},{text}", 2, "30 or 20,30"))
 
 
-@_reads
+@reads
 def law(text: str) -> Law:
     """A,B,C,D of a splat law."""
     return Law(*_numbers(text, 4, "1,0,0.002,0.7"))
 
 
-@_reads
+@reads
 def intrinsics(text: str) -> Numbers:
     """FX,FY,CX,CY of a pinhole, pixels."""
     return Numbers(_numbers(text, 4, "525,525,319.5,239.5"))
 
 
-@_reads
+@reads
 def pose(text: str) -> Numbers:
     """A matrix, row by row: 12 numbers, or 16."""
     return Numbers(_numbers(text, 16 if text.count(",") == 15 else 12, "1,0,0,0,0,1,0,0,0,0,1,0"))
 
 
-@_reads
+@reads
 def cameras(text: str) -> Cameras:
     """I,J,..: numbers of cameras; or all."""
     if text == "all":
         return Cameras()
     parts = text.split(",")
     if not all(part[:1].isdigit() and _WHOLE.fullmatch(part) for part in parts):
-        raise _bad(text, "numbers of cameras, such as 0 or 0,1, or all")
+        raise bad(text, "numbers of cameras, such as 0 or 0,1, or all")
     return Cameras(map(int, parts))
 
 
-@_reads
+@reads
 def view(text: str) -> View:
     """I, I:J or I:J:F: one camera, or two and how far it is from the first to the second."""
     first, *rest = text.split(":")
     where = _finite(rest[1]) if len(rest) == 2 else 0.5
     between = [first, *rest[:1]]
     if len(rest) > 2 or not all(n[:1].isdigit() and _WHOLE.fullmatch(n) for n in between) or not 0.0 <= where <= 1.0:
-        raise _bad(text, "a camera, such as 1, or two and a fraction in [0, 1], such as 0:1 or 0:1:0.25")
+        raise bad(text, "a camera, such as 1, or two and a fraction in [0, 1], such as 0:1 or 0:1:0.25")
     return View(int(first), int(rest[0]) if rest else None, where)
 
 
-@_reads
+@reads
 def size(text: str) -> Size:
     """WIDTHxHEIGHT in pixels."""
     parts = text.lower().split("x")
     if len(parts) != 2 or not all(part[:1].isdigit() and _WHOLE.fullmatch(part) for part in parts):
-        raise _bad(text, "WIDTHxHEIGHT in pixels, such as 640x480")
+        raise bad(text, "WIDTHxHEIGHT in pixels, such as 640x480")
     width, height = int(parts[0]), int(parts[1])
     if not (1 <= width <= 65536 and 1 <= height <= 65536 and width * height <= 2**28):
-        raise _bad(text, "sides from 1 to 65536, at most 2^28 pixels")
+        raise bad(text, "sides from 1 to 65536, at most 2^28 pixels")
     return Size(width, height)
 
 

@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import depth_set_options, emptiness, options, own_case
+from ibr_ref.cli import (
+    depth_set_options,
+    emptiness,
+    options,
+    own_case,
+    pictures,
+    shadows_drawing,
+    shadows_several,
+    shadows_stage,
+)
 from ibr_ref.cli.command import given
 from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
@@ -18,9 +27,7 @@ from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
-    from ibr_ref.io import Frame
-    from ibr_ref.scene import Mesh
-    from ibr_ref.shadows import Maps, Params, Scene, SoftParams
+    from ibr_ref.shadows import Maps, Params, Scene
 
 EXAMPLES = """
 Examples:
@@ -83,45 +90,20 @@ class Controls(StrEnum):
     identity = "identity"
 
 
-class Up(StrEnum):
-    """Axis of the mesh that points up."""
-
-    y = "y"
-    z = "z"
-
-
 def read(
     context: typer.Context,
-    caster: Annotated[
-        Path | None, typer.Option(help="The mesh that moves: OBJ, PLY, STL, glTF, Bézier patches. Without: a horse.")
+    caster: shadows_stage.Casters = None,
+    up: Annotated[
+        shadows_stage.Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")
     ] = None,
-    up: Annotated[Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")] = None,
-    offset: Annotated[
-        options.Pair,
-        typer.Option(parser=options.pair, metavar="X,Y", help="Where it stands, -0.6 to 0.6 each."),
-    ] = options.Pair(0, 0),
+    offset: shadows_stage.Offsets = None,
     samples: Annotated[
         int, typer.Option(parser=options.whole, help="Samples of the light: 1 (a hard shadow), 5 or 9.")
     ] = 1,
-    light: Annotated[
-        options.Vector | None,
-        typer.Option(
-            parser=options.vector, metavar="X,Y,Z", help="Where the light is; its maps fit. Without: -1,-1.2,5."
-        ),
-    ] = None,
-    light_target: Annotated[
-        options.Vector | None,
-        typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point that the light looks at. Without: 0,0,0."),
-    ] = None,
-    light_size: Annotated[
-        options.Pair,
-        typer.Option(
-            parser=options.one_or_two,
-            metavar="A[,B]",
-            help="Half the side of the light, or half of both, along x and y, for more than one sample; the mesh's largest "
-            "extent is 1.",
-        ),
-    ] = options.Pair(0.12, 0.12),
+    light: shadows_stage.Lights = None,
+    light_target: shadows_stage.LightTargets = None,
+    light_size: shadows_stage.LightSizes = None,
+    light_power: shadows_stage.LightPowers = None,
     method: Annotated[
         Method,
         typer.Option(
@@ -163,20 +145,19 @@ def read(
     *,
     within: Callable[[str, int, int], None] | None = None,
 ) -> Described:
-    """What the options describe, and the maps; within: told how far these are.
+    """What the options describe, and the maps; within: told how far these are. Several casters or lights are an Ensemble.
 
     Raises ValueError and OSError for what makes no scene.
     """
-    from ibr_ref import io, models, shadows
+    from ibr_ref import io, shadows
 
     if maps is not None and not _kept(maps):
         io.check_writable(maps)
-    scene = models.shadow_stage(
-        read_caster(caster, up),
-        offset=offset,
-        light_size=light_size,
-        light_position=light,
-        light_target=light_target,
+    ensemble = shadows_stage.stage(
+        caster,
+        up,
+        offset,
+        shadows_stage.stage_lights(light, light_target, light_size, light_power),
         eye=eye,
         target=target,
         width=size.width,
@@ -184,8 +165,13 @@ def read(
         near=near,
         far=far,
     )
+    several = len(ensemble.pairs) > 1 or bool(light_power)
+    if several:
+        shadows_several.check_goes_with(ensemble, {f"--method {method.value}": method.soft, f"--maps {maps}": maps})
+    alone = ensemble.scene(0, 0)
+    scene = ensemble if several else alone
     if method.soft:
-        return Described(scene, shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples), {})
+        return Described(alone, shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples), {})
     fields: dict[str, Any] = {
         "map_size": map_size,
         "map_samples": map_samples,
@@ -201,7 +187,10 @@ def read(
     params = shadows.Params(**fields)
     if method is not Method.warp:
         return Described(scene, params, {})
-    return Described(scene, params, {"maps": loaded or _prepared(scene, params, controls, maps, within)})
+    if several:
+        made = shadows.prepare_ensemble(ensemble, params, controls=controls.value, progress=within)
+        return Described(scene, params, {"maps": made})
+    return Described(scene, params, {"maps": loaded or _prepared(alone, params, controls, maps, within)})
 
 
 @beside(read)
@@ -213,75 +202,60 @@ def command(
             "--report", help="Print how far the shadow is from the rendered or traced one, and the maps' memory."
         ),
     ] = False,
+    path: pictures.CameraPath = None,
+    frames: pictures.Frames = 120,
+    video: pictures.Video = None,
+    fps: pictures.Fps = 30.0,
     depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
     case: own_case.Folder = None,
     **described: Any,
 ) -> None:
-    """Shadows by image warping (Kang & Ihm 2002) of a mesh that moves over a floor with steps."""
+    """Shadows by image warping (Kang & Ihm 2002) of meshes that move over a floor with steps, under one light or several."""
+    whole = {"stages": stages, "report": report, "depth_set": depth_set}
+    wanted = pictures.Wanted(out=out, bits=bits, path=path, frames=frames, video=video, fps=fps, fov=40.0, whole=whole)
     with progress(3) as step:
         step("reading the mesh, preparing maps")
         from ibr_ref import io, shadows
 
-        io.check_image_writable(out, bits)
+        wanted.check(*described["size"])
         own_case.check_writable(case)
         if stages is not None:
             io.check_writable(stages)
         scene, params, inputs, _ = read(**described, within=step.within)
-        soft = isinstance(params, shadows.SoftParams)
-        step("rendering")
-        if soft:
-            frame, lines = _soft_frame(scene, params, stages is not None, report)
+        several, soft = isinstance(scene, shadows.Ensemble), isinstance(params, shadows.SoftParams)
+        if several:
+            shadows_several.check_goes_with(scene, {f"--case {case}": case})
+            drawing = shadows_several.drawing(scene, params, inputs.get("maps"))
+        elif soft:
+            drawing = shadows_drawing.soft(scene, params, wanted.in_bands)
         else:
-            frame, lines = _frame(scene, params, inputs.get("maps"), stages is not None, report)
-        step("writing")
-        if stages is not None:
-            frame.save_stages(stages)
-        if depth_set is not None:
-            io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
-        frame.save(out, bits)
-    poor = _poor(inputs["maps"]) if inputs else None
-    if poor:
-        typer.echo(poor, err=True)
-    for line in lines:
+            drawing = shadows_drawing.one(scene, params, inputs.get("maps"))
+        keep, near, far = report or stages is not None, described["near"], described["far"]
+        shown, frame = pictures.draw(
+            wanted,
+            scene,
+            params,
+            lambda scene, **rows: drawing.render(scene, keep, **rows),
+            lambda camera: shadows_stage.fitted(scene, camera, near, far),
+            step,
+        )
+        if frame is not None:
+            step("writing")
+            if stages is not None:
+                frame.save_stages(stages)
+            if depth_set is not None:
+                io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
+            frame.save(out, bits)
+    for line in drawing.report(frame) if frame is not None and report else []:
         typer.echo(line)
-    emptiness.say(frame, lambda: shadows.culled(scene))
-    if not soft:
+    emptiness.say(shown, lambda: shadows.culled(scene))
+    if several:
+        shadows_several.say_cut(scene, params)
+    elif not soft:
         own_case.write(case, scene, params, **inputs)
         emptiness.say_cut(shadows.cut_by_light(scene, params))
-
-
-def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
-    """The frame, and what is reported of it."""
-    from ibr_ref import shadows
-    from ibr_ref.cli.shadows_report import report_lines
-
-    frame = shadows.render(scene, params, maps=maps, stages=keep or report)
-    return frame, report_lines(scene, params, frame, maps) if report else []
-
-
-def _poor(maps: Maps) -> str | None:
-    """A line for standard error."""
-    from ibr_ref.cli.shadows_report import poor_line
-
-    return poor_line(maps)
-
-
-def _soft_frame(scene: Scene, params: SoftParams, keep: bool, report: bool) -> tuple[Frame, list[str]]:
-    """The frame, and what is reported of it."""
-    from ibr_ref import shadows
-    from ibr_ref.cli.shadows_report import soft_report_line
-
-    frame = shadows.render_soft(scene, params, stages=keep or report)
-    return frame, [soft_report_line(scene, frame)] if report else []
-
-
-def read_caster(path: Path | None, up: Up | None) -> Mesh:
-    """The caster with z up; without a path the horse."""
-    from ibr_ref import io, models
-
-    return models.horse() if path is None else io.read_upright(path, None if up is None else up.value)
 
 
 def _kept(path: Path) -> bool:
@@ -329,8 +303,9 @@ def goes_with() -> dict[str, Beside]:
         return Beside(f"others do not read {name}", {"method": READ_BY[name]})
 
     return {
-        **always("out", "bits", "caster", "offset", "light", "light_target", "method", "eye", "target", "near", "far"),
-        **always("size", "report", "stages", "depth_set"),
+        **pictures.goes_with("eye", "target"),
+        **always("out", "bits", "caster", "offset", "light", "light_target", "light_power", "method"),
+        **always("near", "far", "size", "report", "stages", "depth_set"),
         "case": Beside(own_case.WHY, {"method": named("shadows").judged[1]}),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),

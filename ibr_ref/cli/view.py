@@ -51,6 +51,8 @@ def _of(method: Method) -> Callable[..., None]:
         from ibr_ref.viewer import Subject
 
         scene, params, inputs, _ = room.read(**described)
+        if not isinstance(scene, method.package.open().Scene):
+            raise typer.BadParameter(f"{type(scene).__name__}: found several casters or lights, allowed: one of each")
         serve(Subject(scene=scene, params=params, inputs=inputs, title=method.title), port, no_browser)
 
     command.__doc__ = f"{method.title} ({method.source}) of what `ibr-ref render {method.name}` takes."

@@ -50,10 +50,17 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
     view = methods.Room("ibr_ref.cli.view").open()
     return {
         **{f"render {m.name}": m.command.open().goes_with for m in methods.records() if m.command is not None},
+        **{
+            f"sweep {m.name}": m.sweep_command.open().goes_with
+            for m in methods.records()
+            if m.sweep_command is not None
+        },
         "export": _export,
         "check": _check,
         "hunt": _hunt,
+        "draw": lambda: always("case", "folder", "with_", "adapter"),
         **{f"view {name}": partial(view.goes_with, name) for name in view.commands()},
+        "conformance": lambda: always("case", "with_", "adapter", "out"),
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),

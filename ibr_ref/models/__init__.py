@@ -8,7 +8,8 @@ Meshes, each of closed parts wound outward: `kettle()`, `chair()` and `horse()` 
 many as the teapot, the chair and the cow of the shadows' tables have polygons; `sphere()` and `knot()`.
 
 `depth_rig(mesh, count)` takes the reference images of splatting of any mesh, `depth_image(mesh, camera)` one from where
-you like: the truth that a splatted view can be held against. `shadow_stage(caster)` is a scene for shadows around any mesh.
+you like: the truth that a splatted view can be held against. `shadow_stage(caster)` is a scene for shadows around any mesh,
+`shadow_ensemble` one of several, under several lights.
 """
 
 from ibr_ref.models.box import box
@@ -19,10 +20,12 @@ from ibr_ref.models.depth_rig import depth_image, depth_rig
 from ibr_ref.models.horse import horse
 from ibr_ref.models.kettle import kettle
 from ibr_ref.models.knot import knot
-from ibr_ref.models.shadow_stage import shadow_stage
+from ibr_ref.models.shadow_stage import shadow_ensemble, shadow_stage
 from ibr_ref.models.sphere import sphere
+from ibr_ref.models.stage_light import StageLight
 
 __all__ = [
+    "StageLight",
     "box",
     "buildings",
     "chair",
@@ -33,6 +36,7 @@ __all__ = [
     "horse",
     "kettle",
     "knot",
+    "shadow_ensemble",
     "shadow_stage",
     "sphere",
 ]

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.models.stage_light import half_edges, stage_light
+from ibr_ref.models.stage_light import StageLight, corners
 from ibr_ref.scene import Camera, Mesh, checks
-from ibr_ref.shadows import Scene
+from ibr_ref.shadows import Caster, Ensemble, Scene
 
 REACH = 0.6
 """The caster's offset on either axis, in units of its largest extent, which is 1 on the stage."""
+
+EYE, TARGET, FIELD_OF_VIEW = (1.4, -3.0, 2.1), (0.15, 0.35, -0.1), 40.0
+"""Of the camera."""
 
 _FLOOR = -0.5
 _FOOT = _FLOOR + 1.0 / 128.0
@@ -27,8 +32,8 @@ def shadow_stage(
     light_size: ArrayLike = 0.12,
     light_position: ArrayLike | None = None,
     light_target: ArrayLike | None = None,
-    eye: ArrayLike = (1.4, -3.0, 2.1),
-    target: ArrayLike = (0.15, 0.35, -0.1),
+    eye: ArrayLike = EYE,
+    target: ArrayLike = TARGET,
     width: int = 640,
     height: int = 480,
     near: float | None = None,
@@ -45,34 +50,71 @@ def shadow_stage(
     Raises ValueError for a mesh that is none or has no extent, a light that has not the whole caster before it, and what
     makes no scene.
     """
-    if not isinstance(caster, Mesh):
-        raise checks.reject("caster", type(caster).__name__, "a Mesh")
-    edges = half_edges(light_size)
-    place = checks.vector("offset", offset, 2)
-    receivers, scaled = _receivers(), _scaled(caster.compact())
+    return shadow_ensemble(
+        [caster],
+        offsets=[offset],
+        lights=[StageLight(position=light_position, target=light_target, size=light_size)],
+        eye=eye,
+        target=target,
+        width=width,
+        height=height,
+        near=near,
+        far=far,
+    ).scene(0, 0)
+
+
+def shadow_ensemble(
+    casters: Sequence[Mesh],
+    *,
+    offsets: Sequence[ArrayLike],
+    lights: Sequence[StageLight] = (StageLight(),),
+    eye: ArrayLike = EYE,
+    target: ArrayLike = TARGET,
+    width: int = 640,
+    height: int = 480,
+    near: float | None = None,
+    far: float | None = None,
+) -> Ensemble:
+    """The same stage for several casters and lights.
+
+    casters: each as `shadow_stage` takes it, of an extent of 1. offsets: one (x, y) for each. lights: those that are placed
+    have maps that show every caster wherever it stands; the others are the stage's own. eye to far: as there.
+    Raises ValueError where that does, and for another number of offsets than of casters.
+    """
+    meshes = [_scaled(_mesh(name, mesh).compact()) for name, mesh in _numbered("caster", casters)]
+    places = [checks.vector(name, offset, 2) for name, offset in _numbered("offset", offsets)]
+    if len(places) != len(meshes):
+        raise checks.reject("offsets", len(places), f"{len(meshes)}, one for each caster")
+    receivers = _receivers()
     above = np.array_equal(checks.vector("eye", eye)[:2], checks.vector("target", target)[:2])
     up = (0.0, 1.0, 0.0) if above else (0.0, 0.0, 1.0)
-    camera = Camera.look_at(eye=eye, target=target, up=up, vertical_fov=40.0, width=width, height=height)
-    around = np.concatenate([*(mesh.bounds for mesh in receivers), scaled.bounds + np.append(place, 0.0)])
-    reach = np.append(REACH + edges.diagonal(), 0.0)
-    swept = _corners(np.concatenate([scaled.bounds - reach, scaled.bounds + reach]))
-    return Scene(
+    camera = Camera.look_at(eye=eye, target=target, up=up, vertical_fov=FIELD_OF_VIEW, width=width, height=height)
+    placed = [mesh.bounds + np.append(place, 0.0) for mesh, place in zip(meshes, places, strict=True)]
+    around = corners(np.concatenate([*(mesh.bounds for mesh in receivers), *placed]))
+    bounds = corners(np.concatenate([mesh.bounds for mesh in meshes]))
+    return Ensemble(
         receivers=receivers,
-        caster=scaled,
-        offset_axes=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
-        offset_range=((-REACH, REACH), (-REACH, REACH)),
-        offset=place,
-        light=stage_light(light_position, light_target, edges, swept, _corners(around)),
-        camera=camera.fitted(_corners(around), near=near, far=far),
+        casters=[
+            Caster(mesh=mesh, offset=place, offset_range=((-REACH, REACH), (-REACH, REACH)))
+            for mesh, place in zip(meshes, places, strict=True)
+        ],
+        lights=[light.over(bounds, REACH, around) for light in lights],
+        powers=[light.power for light in lights],
+        camera=camera.fitted(around, near=near, far=far),
         ambient=0.25,
         background=(0.82, 0.88, 0.94),
     )
 
 
-def _corners(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(8, 3) of the box around points (N, 3)."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    return np.array([[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)])
+def _mesh(name: str, value: object) -> Mesh:
+    if not isinstance(value, Mesh):
+        raise checks.reject(name, type(value).__name__, "a Mesh")
+    return value
+
+
+def _numbered(name: str, values: Sequence[Any]) -> list[tuple[str, Any]]:
+    """Each with its name: the plain one where there is but one."""
+    return [(name if len(values) == 1 else f"{name}s[{i}]", value) for i, value in enumerate(values)]
 
 
 def _scaled(mesh: Mesh) -> Mesh:

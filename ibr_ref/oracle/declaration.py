@@ -67,6 +67,11 @@ NUMBERS: dict[str, Number] = {
         "range of z / w: glClipControl",
         lambda device, over: {"minus_one": over == "minus_one_to_one"},
     ),
+    "clip_border": Number(
+        ("none", "allowed"),
+        "whether triangles may be cut at the picture's borders: none where a guard band is known to keep them whole",
+        lambda device, cut: {"clip_border": cut == "allowed"},
+    ),
     "depth_format": Number(
         tuple(DEPTH_STEPS),
         "the depth buffer's",

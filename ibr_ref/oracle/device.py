@@ -54,6 +54,8 @@ class Device:
     """How far a splat's border may lie from centre +- width / 2, the centre snapped as the reference's, in pixels."""
     minus_one: bool
     """Clip z may run from -w to w, by a projection matrix of its own, and window depth be (z / w + 1) / 2."""
+    clip_border: bool
+    """Triangles may be cut at the picture's borders, -w <= x, y <= w, and varyings be set up over any pieces."""
     depth_step: float
     """Steps of the depth buffer. 0: float32."""
     byte: float
@@ -113,6 +115,7 @@ IEEE32 = _device(
     unsnapped=(False, "the conventions of this reference: barycentrics of the snapped positions"),
     splat_border=(0.0, "the conventions of this reference: only the centre is snapped, the width is not"),
     minus_one=(False, "the conventions of this reference: 0 <= z <= w"),
+    clip_border=(False, "the conventions of this reference: x and y are cut far beyond the picture"),
     depth_step=(0.0, "IEEE 754-2019: a float32 depth buffer"),
     byte=(0.5, "the conventions of this reference: floor(255 c + 0.5)"),
 )
@@ -133,6 +136,7 @@ D3D11 = _device(
     unsnapped=(False, f"{_D3D}, rasterizer: vertices are snapped before the triangle is set up"),
     splat_border=(1.1 * 2.0**-8, f"{_D3D}, 3.2.4.1: a quad's corners within 0.6 steps; {_CENTRE}"),
     minus_one=(False, f"{_D3D}, clipping: 0 <= z <= w"),
+    clip_border=(False, f"{_D3D}, rasterizer: a guard band around the viewport"),
     depth_step=(2.0**-24, f"{_D3D}, formats: D24_UNORM_S8_UINT"),
     byte=(0.6, f"{_D3D}, conversion of floats to UNORM: within 0.6 ULP"),
 )
@@ -155,6 +159,7 @@ VULKAN = _device(
         f"Vulkan 1.3, Rasterization: a quad's corners at either neighbour on the raster; {_CENTRE}",
     ),
     minus_one=(False, "Vulkan 1.3, Primitive Clipping: 0 <= z <= w"),
+    clip_border=(True, "Vulkan 1.3, Primitive Clipping: the view volume, -w <= x, y <= w"),
     depth_step=(2.0**-24, "Vulkan 1.3, Formats: VK_FORMAT_D24_UNORM_S8_UINT, X8_D24"),
     byte=(1.0, "Vulkan 1.3, Fixed-Point Data Conversions: they may give either neighbour (the nearest is preferred)"),
 )
@@ -177,6 +182,7 @@ WEBGPU = _device(
     ),
     splat_border=(1.5 * 2.0**-8, f"WebGPU, Rasterization: a quad's corners as any positions; {_CENTRE}"),
     minus_one=(False, "WebGPU, Coordinate Systems: 0 <= z <= w"),
+    clip_border=(True, "WebGPU, Primitive Clipping: the clip volume, -w <= x, y <= w"),
     depth_step=(2.0**-24, "WebGPU, Texture Format Capabilities: depth24plus may have 24 bits unorm"),
     byte=(1.0, "WebGPU leaves conversion to the API below: either neighbour"),
 )
@@ -202,6 +208,7 @@ GL = _device(
         f"OpenGL 4.6, Points: a sprite's size has a granularity, here 1/256; quads: {_CENTRE}",
     ),
     minus_one=(True, "OpenGL 4.6, Primitive Clipping: -w <= z <= w, the initial clip control"),
+    clip_border=(True, "OpenGL 4.6, Primitive Clipping: the view volume, -w <= x, y <= w"),
     depth_step=(2.0**-24, "OpenGL 4.6, Coordinate Transformations: window depth may be fixed point; DEPTH_COMPONENT24"),
     byte=(1.0, "OpenGL 4.6, Conversion from Floating-Point to Normalized Fixed-Point: either neighbour"),
 )

@@ -100,7 +100,7 @@ def try_mutants(method: str, *, kinds: Sequence[str]) -> Iterator[MutantResult]:
     module = plain_port(method)
     cases = [case for case in map(build, names(method)) if case.kind in kinds]
     for mutant in module.MUTANTS:
-        yield _try_mutant(method, mutant, cases)
+        yield _try_mutant(method, mutant, [case for case in cases if mutant.applies(case.system)])
 
 
 def _try_mutant(method: str, mutant: Mutant, cases: Sequence[Case]) -> MutantResult:

@@ -5,7 +5,8 @@
 however many triangles the caster has. `method="direct"` renders a map for every sample instead; `method="grid"` takes n
 x n maps made beforehand (`prepare_grid`) without a warp, raw or compressed by Haar wavelets. `shadow_maps` gives the
 maps alone. `render_soft(Scene, SoftParams)` softens the shadow by other ways than samples of the light, to compare
-with: rays, a convolution, and percentage-closer filtering (`help(ibr_ref.shadows.soft)`).
+with: rays, a convolution, and percentage-closer filtering (`help(ibr_ref.shadows.soft)`). `Ensemble`, `prepare_ensemble`
+and `render_ensemble` do the same for several casters under several lights.
 
 `ibr-ref method shadows` prints the method, stage by stage: formulas, ties, every array with shape, dtype and "nothing",
 and what the paper leaves open (`method.md` beside this file). `contract.STAGES` is the table of the arrays.
@@ -16,14 +17,18 @@ made.
 
 from ibr_ref.scene import AreaLight
 from ibr_ref.shadows.culling import culled, cut_by_light
+from ibr_ref.shadows.ensemble import Caster, Ensemble
 from ibr_ref.shadows.grid import MapGrid, prepare_grid
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.prepared import Maps, prepare
 from ibr_ref.shadows.render import render, shadow_maps
+from ibr_ref.shadows.render_ensemble import prepare_ensemble, render_ensemble
 from ibr_ref.shadows.soft import SoftParams, render_soft
 
 __all__ = [
     "AreaLight",
+    "Caster",
+    "Ensemble",
     "MapGrid",
     "Maps",
     "Params",
@@ -32,8 +37,10 @@ __all__ = [
     "culled",
     "cut_by_light",
     "prepare",
+    "prepare_ensemble",
     "prepare_grid",
     "render",
+    "render_ensemble",
     "render_soft",
     "shadow_maps",
 ]

@@ -8,6 +8,7 @@ import numpy as np
 
 from ibr_ref.pipeline.culling import Culled, cut_triangles, fates_of_triangles
 from ibr_ref.pipeline.culling import culled as counted
+from ibr_ref.shadows.ensemble import Ensemble
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.maps import positions
 from ibr_ref.shadows.samples import samples_of, seen_offset, widened_range
@@ -34,10 +35,13 @@ class Cut(NamedTuple):
         )
 
 
-def culled(scene: Scene) -> Culled:
-    """What becomes of the triangles of receivers and caster, before the depth test."""
-    meshes = [(np.asarray(mesh.vertices), np.asarray(mesh.triangles)) for mesh in (*scene.receivers, scene.caster)]
-    meshes[-1] = (place(meshes[-1][0], scene.axes, np.asarray(scene.offset)), meshes[-1][1])
+def culled(scene: Scene | Ensemble) -> Culled:
+    """What becomes of the triangles of receivers and casters, before the depth test."""
+    meshes = [(np.asarray(mesh.vertices), np.asarray(mesh.triangles)) for mesh in scene.receivers]
+    meshes += [
+        (place(np.asarray(mesh.vertices), axes, offset), np.asarray(mesh.triangles))
+        for mesh, axes, offset in scene.movers
+    ]
     camera = scene.camera
     fates = [
         fates_of_triangles(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,6 +36,17 @@ MOST_CONTROLS = 256
 """Largest R and C."""
 MOST_GRID_BYTES = 2**32
 """Of all maps of a grid."""
+
+
+class Mover(NamedTuple):
+    """A caster and where it is."""
+
+    mesh: Mesh
+    axes: NDArray[np.float64]
+    """(2, 3)."""
+    offset: NDArray[np.float64]
+    """(2,)."""
+
 
 LIMITS: dict[str, Limit] = {
     "map_size": Whole(8, LARGEST_MAP),
@@ -107,6 +119,11 @@ class Scene:
     def axes(self) -> NDArray[np.float64]:
         """offset_axes as an array."""
         return np.asarray(self.offset_axes)
+
+    @property
+    def movers(self) -> tuple[Mover, ...]:
+        """What moves: the caster alone."""
+        return (Mover(self.caster, self.axes, np.asarray(self.offset)),)
 
     def _check_offset(self) -> None:
         (x0, x1), (y0, y1) = np.asarray(self.offset_range).tolist()

@@ -10,14 +10,15 @@ from numpy.typing import NDArray
 
 from ibr_ref.array_types import Floats
 from ibr_ref.io import Frame
-from ibr_ref.scene import checks
+from ibr_ref.scene import AreaLight, checks
 from ibr_ref.shadows import grid
+from ibr_ref.shadows.ensemble import Ensemble
 from ibr_ref.shadows.grid import MapGrid
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.maps import values
 from ibr_ref.shadows.prepared import Maps, check_unfolded, depths_of, prepare, source_of, texels_at, view_of
 from ibr_ref.shadows.project import DEPTH, DEPTH_PCF, MASK, Lookup, Projected, project
-from ibr_ref.shadows.resolve import accumulate, resolve
+from ibr_ref.shadows.resolve import accumulate, one_light, resolve
 from ibr_ref.shadows.samples import Sample, samples_of, seen_offset
 from ibr_ref.shadows.surface import Object, Surface, see
 from ibr_ref.shadows.vertex import place
@@ -25,48 +26,51 @@ from ibr_ref.shadows.warp import Warped, grids_at, locate, shares_at, warp_stage
 
 
 def render(
-    scene: Scene, params: Params | None = None, *, maps: Maps | MapGrid | None = None, stages: bool = True
+    scene: Scene,
+    params: Params | None = None,
+    *,
+    maps: Maps | MapGrid | None = None,
+    stages: bool = True,
+    rows: tuple[int, int] | None = None,
 ) -> Frame:
     """Draw receivers and caster with the caster's shadow.
 
     maps: what `prepare` made for this scene's caster, axes and light, for any offset (for method="grid" `prepare_grid`);
     None: made here, at every call. With `stages` the frame holds every intermediate array (`contract.STAGES` lists
-    them); without, the same picture and depth sooner. Raises ValueError for inputs that only together are not allowed,
-    and for maps that do not fit the scene and the parameters.
+    them); without, the same picture and depth sooner. rows: first and one past the last row of the picture that are drawn,
+    the same bits as in all of it; None: all. Raises ValueError for inputs that only together are not allowed, and for maps
+    that do not fit the scene and the parameters.
     """
     params = Params() if params is None else params
     samples = samples_of(scene, params)
-    images, kept = _images(scene, params, samples, maps, stages)
-    surface = surface_of(scene)
-    lookup = _lookup(scene, params, stages)
+    images, kept = images_of(scene, params, samples, maps, stages)
+    surface = surface_of(scene, rows)
+    lookup = lookup_of(scene, params, stages)
     shadow = np.zeros(surface.depth.shape)
     projections = []
     for sample, image in zip(samples, images, strict=True):
-        camera = scene.light.camera(params.map_size, sample.position)
-        projected = project(
-            surface.triangle, surface.varyings, camera.view_from_world, camera.clip_from_view, image, lookup
-        )
+        projected = projected_from(scene.light, sample, image, surface, lookup)
         accumulate(shadow, projected.shadow, len(samples), params.accumulation == "unorm8")
         if stages:
             projections.append(projected)
     np.minimum(shadow, 1.0, out=shadow)  # N times 1/N may come out an ulp above 1
-    light, background = scene.light.arrays[0], np.asarray(scene.background)
-    color = resolve(surface, shadow, scene.camera.eye, light, float(scene.ambient), background)
+    lights, background = one_light(scene.light.arrays[0]), np.asarray(scene.background)
+    color = resolve(surface, shadow[np.newaxis], scene.camera.eye, lights, float(scene.ambient), background)
     if stages:
-        kept.update(_grouped("project", Projected._fields, projections), **{"accumulate.shadow": shadow})
+        kept.update(grouped("project", Projected._fields, projections), **{"accumulate.shadow": shadow})
     return Frame(color=color, depth=surface.depth, stages=kept)
 
 
 def shadow_maps(scene: Scene, params: Params | None = None, *, maps: Maps | MapGrid | None = None) -> Floats:
     """The maps (N, S, S) that `render` projects, one for each light sample; maps as there."""
     params = Params() if params is None else params
-    return np.stack(_images(scene, params, samples_of(scene, params), maps, stages=False)[0])
+    return np.stack(images_of(scene, params, samples_of(scene, params), maps, stages=False)[0])
 
 
 # --- The maps that are projected -------------------------------------------------------------------------------------
 
 
-def _images(
+def images_of(
     scene: Scene, params: Params, samples: Sequence[Sample], maps: Maps | MapGrid | None, stages: bool
 ) -> tuple[list[Floats], dict[str, Any]]:
     """A map (S, S) for each light sample, and the stages up to it."""
@@ -78,7 +82,7 @@ def _images(
         raise checks.reject("maps", type(maps).__name__, 'None with method="direct"')
     else:
         images = [_direct(scene, params, sample) for sample in samples]
-    return images, {"warp.image": _per_sample(images)} if stages else {}
+    return images, {"warp.image": per_sample(images)} if stages else {}
 
 
 def _direct(scene: Scene, params: Params, sample: Sample) -> Floats:
@@ -139,8 +143,8 @@ def _warped(
         return images, {}
     made = {"maps.positions": maps.positions, "maps.image": maps.image, "controls": maps.controls}
     if depths is None:
-        return images, {**made, **_grouped("warp", [name for name in Warped._fields if name != "shares"], warps)}
-    return images, {**made, "maps.depths": depths, **_grouped("warp", Warped._fields, warps)}
+        return images, {**made, **grouped("warp", [name for name in Warped._fields if name != "shares"], warps)}
+    return images, {**made, "maps.depths": depths, **grouped("warp", Warped._fields, warps)}
 
 
 def _check_grids(controls: Floats, cell: NDArray[np.int32], three: Floats, sample: int) -> None:
@@ -171,34 +175,46 @@ def _from_grid(scene: Scene, params: Params, samples: Sequence[Sample], maps: Ma
 # --- What they are projected onto ------------------------------------------------------------------------------------
 
 
-def caster_from(scene: Scene) -> int:
-    """Index of the caster's first triangle on the surface."""
+def caster_from(scene: Scene | Ensemble) -> int:
+    """Index of the casters' first triangle on the surface."""
     return sum(len(np.asarray(mesh.triangles)) for mesh in scene.receivers)
 
 
-def surface_of(scene: Scene) -> Surface:
-    """What the scene's camera sees, the caster at its offset."""
+def surface_of(scene: Scene | Ensemble, rows: tuple[int, int] | None = None) -> Surface:
+    """What the scene's camera sees, every caster at its offset; rows as in `render`."""
     objects = [
         Object(np.asarray(mesh.vertices), np.asarray(mesh.triangles), np.asarray(mesh.color))
-        for mesh in (*scene.receivers, scene.caster)
+        for mesh in scene.receivers
     ]
-    objects[-1] = objects[-1]._replace(vertices=place(objects[-1].vertices, scene.axes, np.asarray(scene.offset)))
+    objects += [
+        Object(place(np.asarray(mesh.vertices), axes, offset), np.asarray(mesh.triangles), np.asarray(mesh.color))
+        for mesh, axes, offset in scene.movers
+    ]
     camera = scene.camera
-    return see(objects, camera.view_from_world, camera.clip_from_view, camera.width, camera.height)
+    size = camera.width, camera.height
+    return see(objects, camera.view_from_world, camera.clip_from_view, *size, checks.rows(rows, camera.height))
 
 
-def _lookup(scene: Scene, params: Params, keep: bool) -> Lookup:
+def lookup_of(scene: Scene | Ensemble, params: Params, keep: bool) -> Lookup:
+    """How maps are read."""
     mode = MASK if params.content == "mask" else DEPTH_PCF if params.pcf else DEPTH
     return Lookup(mode, params.quantize is not None, float(params.bias), caster_from(scene), keep)
+
+
+def projected_from(light: AreaLight, sample: Sample, image: Floats, surface: Surface, lookup: Lookup) -> Projected:
+    """A map (S, S) from a sample of a light onto what is seen."""
+    camera = light.camera(len(image), sample.position)
+    return project(surface.triangle, surface.varyings, camera.view_from_world, camera.clip_from_view, image, lookup)
 
 
 # --- Stages ----------------------------------------------------------------------------------------------------------
 
 
-def _per_sample(arrays: Sequence[NDArray[np.generic]]) -> NDArray[np.generic]:
+def per_sample(arrays: Sequence[NDArray[np.generic]]) -> NDArray[np.generic]:
     """Along a leading axis of samples, which a single one does not have."""
     return np.stack(arrays) if len(arrays) > 1 else arrays[0]
 
 
-def _grouped(group: str, names: Sequence[str], results: Sequence[Any]) -> dict[str, Any]:
-    return {f"{group}.{name}": _per_sample([getattr(result, name) for result in results]) for name in names}
+def grouped(group: str, names: Sequence[str], results: Sequence[Any]) -> dict[str, Any]:
+    """Stages "group.name" of the results of all samples."""
+    return {f"{group}.{name}": per_sample([getattr(result, name) for result in results]) for name in names}

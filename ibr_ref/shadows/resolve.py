@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ibr_ref.array_types import Floats
@@ -18,40 +20,60 @@ def accumulate(total: Floats, shadow: Floats, count: int, unorm8: bool) -> None:
 
 
 @device
-def _brightness(normal, eye, light, ambient, shadow, x, y, z):
-    """ambient + (1 - ambient)(1 - shadow) max(0, n.l), the normal turned to the eye (4,)."""
+def _brightness(normal, eye, lights, ambient, shadows, row, column, p):
+    """ambient + the sum of power (1 - ambient)(1 - shadow) max(0, n.l) of all lights, the normal turned to the eye (4,)."""
     nx, ny, nz = normal[0], normal[1], normal[2]
-    w = eye[3]
+    x, y, z, w = p[0], p[1], p[2], eye[3]
     if nx * (eye[0] - w * x) + ny * (eye[1] - w * y) + nz * (eye[2] - w * z) < 0.0:
         nx, ny, nz = -nx, -ny, -nz
-    lx, ly, lz = unit(light[0] - x, light[1] - y, light[2] - z)
-    cosine = nx * lx + ny * ly + nz * lz
-    return ambient + (1.0 - ambient) * (1.0 - shadow) * (cosine if cosine > 0.0 else 0.0)
+    bright = ambient
+    for j in range(len(shadows)):
+        lx, ly, lz = unit(lights.centres[j, 0] - x, lights.centres[j, 1] - y, lights.centres[j, 2] - z)
+        cosine = nx * lx + ny * ly + nz * lz
+        lit = (1.0 - ambient) * (1.0 - shadows[j, row, column]) * (cosine if cosine > 0.0 else 0.0)
+        bright += lights.powers[j] * lit
+    return bright
 
 
 @device
-def _resolve_row(surface, shadow, eye, light, ambient, background, row, color):
-    for column in range(shadow.shape[1]):
+def _resolve_row(surface, shadows, eye, lights, ambient, background, row, color):
+    for column in range(shadows.shape[2]):
         t = surface.triangle[row, column]
         if t < 0:
             for k in range(3):
                 color[row, column, k] = background[k]
             continue
         p = surface.varyings[row, column]
-        bright = _brightness(surface.normals[t], eye, light, ambient, shadow[row, column], p[0], p[1], p[2])
+        bright = _brightness(surface.normals[t], eye, lights, ambient, shadows, row, column, p)
         for k in range(3):
             plain = surface.colors[t, k]
             color[row, column, k] = (p[3 + k] if np.isnan(plain) else plain) * bright
 
 
 @kernel
-def _resolve(surface, shadow, eye, light, ambient, background, color):
-    for row in prange(shadow.shape[0]):
-        _resolve_row(surface, shadow, eye, light, ambient, background, row, color)
+def _resolve(surface, shadows, eye, lights, ambient, background, color):
+    for row in prange(shadows.shape[1]):
+        _resolve_row(surface, shadows, eye, lights, ambient, background, row, color)
 
 
-def resolve(surface: Surface, shadow: Floats, eye: Floats, light: Floats, ambient: float, background: Floats) -> Floats:
-    """(H, W, 3) the picture: surface colour times brightness, for the eye (4,) and the light's centre (3,)."""
-    (color,) = memory.arrays([(np.float64, (*shadow.shape, 3))])
-    _resolve(surface, shadow, eye, light, ambient, background, color)
+class Lights(NamedTuple):
+    """What lights add to a picture beside their shadows."""
+
+    centres: Floats
+    """(L, 3) in world space."""
+    powers: Floats
+    """(L,) factors of their light."""
+
+
+def one_light(centre: Floats) -> Lights:
+    """A light (3,) as it is."""
+    return Lights(centre.reshape(1, 3), np.ones(1))
+
+
+def resolve(
+    surface: Surface, shadows: Floats, eye: Floats, lights: Lights, ambient: float, background: Floats
+) -> Floats:
+    """(H, W, 3) the picture: surface colour times brightness, for the eye (4,) and the lights with shadows (L, H, W)."""
+    (color,) = memory.arrays([(np.float64, (*surface.depth.shape, 3))])
+    _resolve(surface, shadows, eye, lights, ambient, background, color)
     return color

@@ -28,7 +28,7 @@ from ibr_ref.shadows.inputs import FINEST_MAP, LARGEST_MAP, Params, Scene
 from ibr_ref.shadows.lattice import on_parallelogram
 from ibr_ref.shadows.maps import MOST_SAMPLES
 from ibr_ref.shadows.render import caster_from, surface_of
-from ibr_ref.shadows.resolve import resolve
+from ibr_ref.shadows.resolve import one_light, resolve
 from ibr_ref.shadows.samples import samples_of
 from ibr_ref.shadows.surface import Surface
 from ibr_ref.shadows.traced import traced
@@ -98,8 +98,9 @@ def render_soft(scene: Scene, params: SoftParams | None = None, *, stages: bool 
     kept = {"traced": _traced, "convolution": _convolved, "pcss": _softened}[params.method](
         scene, params, surface, caster
     )
-    light, background = scene.light.arrays[0], np.asarray(scene.background)
-    color = resolve(surface, kept["soft.shadow"], scene.camera.eye, light, float(scene.ambient), background)
+    lights, background = one_light(scene.light.arrays[0]), np.asarray(scene.background)
+    shadows = kept["soft.shadow"][np.newaxis]
+    color = resolve(surface, shadows, scene.camera.eye, lights, float(scene.ambient), background)
     return Frame(color=color, depth=surface.depth, stages=kept if stages else {})
 
 

@@ -200,3 +200,60 @@ def test_the_cow(run: Run, tmp_path: Path) -> None:
     out = tmp_path / "cow.png"
     assert run("render", "shadows", "--caster", REAL / "cow.obj", "--samples", "9", "--out", out) == (0, "", "")
     assert imageio.imread(out).shape == (480, 640, 3)
+
+
+TWO = ("--offset=-0.6,0", "--offset", "0.6,0.3", "--light=-1,-1.2,5", "--light", "2,-1,4")
+
+
+def test_two_casters_under_two_lights(run: Run, cube: Path, tmp_path: Path) -> None:
+    """What is drawn is that ensemble; of powers and sizes one stands for all."""
+    out, stages = tmp_path / "out.png", tmp_path / "dump.npz"
+    more = ("--caster", cube, *TWO, "--light-power", "0.4", "--light-size", "0.2", "--samples", 5, "--method", "direct")
+    code, said, err = run(*of_cube(cube, out, *more, "--report", "--stages", stages))
+    assert (code, err) == (0, "")
+    assert said.count("shadow of light ") == 2
+    assert "IoU 1.000" in said
+    ensemble = models.shadow_ensemble(
+        [io.read_upright(cube)] * 2,
+        offsets=[(-0.6, 0), (0.6, 0.3)],
+        lights=[models.StageLight(position=at, size=0.2, power=0.4) for at in ((-1, -1.2, 5), (2, -1, 4))],
+        width=96,
+        height=72,
+    )
+    frame = shadows.render_ensemble(ensemble, shadows.Params(method="direct", map_size=64, light_samples=5))
+    assert np.array_equal(io.read_image(out), np.floor(frame.color * 255 + 0.5) / 255)
+    with np.load(stages, allow_pickle=False) as dump:
+        assert dump["light1.caster1.warp.image"].shape == (5, 64, 64)
+        assert np.array_equal(dump["light1.accumulate.shadow"], frame.stages["light1.accumulate.shadow"])
+
+
+def test_what_is_cut_is_said_of_each_caster_and_light(run: Run, cube: Path, tmp_path: Path) -> None:
+    more = ("--caster", cube, *TWO[:3], "--method", "direct", "--samples", 9, "--light-size", 3)
+    code, _, err = run(*of_cube(cube, tmp_path / "out.png", *more))
+    assert code == 0
+    assert [line.split(": ")[1] for line in err.splitlines()] == ["casters[0]", "casters[1]"]
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (("--offset", "0,0", "--offset", "0,0"), ("--offset: found 2", "each of 1 of --caster")),
+        (("--caster", "CUBE"), ("--offset: found 0", "each of 2 of --caster")),
+        (("--light", "0,0,5", "--light", "1,0,5", *["--light-target", "0,0,0"] * 3), ("--light-target: found 3",)),
+        (("--light", "0,0,5", "--light-power", "-1"), ("powers[0]: found -1.0",)),
+        (
+            ("--light", "0,0,5", "--light", "1,0,5", "--method", "pcss"),
+            ("--method pcss", "2 of --light", "one of each"),
+        ),
+        (("--light", "0,0,5", "--light", "1,0,5", "--case", "box"), ("--case", "the oracle judges no others")),
+        (("--light", "0,0,5", "--light", "1,0,5", "--maps", "m.npz"), ("--maps", "one caster and one light")),
+        (("--light-power", "0.5", "--case", "box"), ("--case", "without --light-power")),
+    ],
+    ids=lambda value: " ".join(value),
+)
+def test_several_that_do_not_go_together(
+    run: Run, cube: Path, tmp_path: Path, more: tuple[str, ...], words: tuple[str, ...]
+) -> None:
+    given = [cube if word == "CUBE" else word for word in more]
+    assert_one_line(run(*of_cube(cube, tmp_path / "out.png", *given)), *words)
+    assert not (tmp_path / "out.png").exists()

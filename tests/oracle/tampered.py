@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
-from ibr_ref.oracle.faults import displacement
-from ibr_ref.oracle.ports import shadows, splatting
+from ibr_ref.oracle.faults import displacement, splatting
+from ibr_ref.oracle.ports import shadows
 
 Arrays = dict[str, Any]
 Change = Callable[[Any], Any]
@@ -40,14 +40,14 @@ class _Change:
 class _Splatting(_Change, splatting.Port):
     """Lit with its own normals."""
 
-    def _arrays(self, *context: Any) -> Arrays:
-        assert isinstance(context[0], Arithmetic)
-        codes = [self.normals(*context).codes(image) for image in self.scene.images]
-        atlas = self._all(self.atlas(*context).arrays(codes))
+    def render(self) -> Arrays:
+        prepared = self.preparation(self.scene, self.params, self.do.policy, {})
+        codes = [prepared.codes(image) for image in self.scene.images]
+        atlas = self._all({**self.atlas(), "atlas.normal": self.pages(self.places(), codes)})
         own = [atlas["atlas.normal"][p][y : y + h, x : x + w] for p, x, y, w, h in atlas["atlas.rects"].tolist()]
-        vertices = self._all(self.vertex(*context).arrays(atlas, own))
-        raster = self._all(self.raster(*context).arrays(vertices))
-        color = self.resolve(*context).color(vertices, raster["raster.splat"])
+        vertices = self._all(self.vertices(atlas, own))
+        raster = self._all(self.raster(vertices))
+        color = self.resolve(vertices["vertex.color"], raster["raster.splat"])
         return {**atlas, **vertices, **raster, "color": color, "depth": raster["raster.depth"]}
 
     def _all(self, arrays: Arrays) -> Arrays:

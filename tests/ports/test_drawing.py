@@ -15,7 +15,7 @@ import ibr_ref.ports
 from ibr_ref import oracle
 
 PORTS = Path(ibr_ref.ports.__file__).parent
-FILES = [path for path in sorted(PORTS.rglob("*.py")) if path.name not in ("described.py", "__main__.py")]
+FILES = [path for path in sorted(PORTS.rglob("*.py")) if path.name not in ("described.py", "drawing.py", "__main__.py")]
 """The ports, without what runs them."""
 
 
@@ -29,17 +29,17 @@ def test_nothing_else_of_the_package_is_imported(path: Path) -> None:
         assert all(f"{module}.".startswith("ibr_ref.ports.") for module in own), own
 
 
-def drawn(case: oracle.Case, device: Any, **options: Any) -> Any:
-    from ibr_ref.ports.__main__ import draw
+def drawing(case: oracle.Case, device: Any, **options: Any) -> Any:
     from ibr_ref.ports.described import described
+    from ibr_ref.ports.drawing import drawn
 
-    return draw(described(case.method, case.scene, case.params, **case.inputs), device, **options)
+    return drawn(described(case.method, case.scene, case.params, **case.inputs), "glsl", device, **options)
 
 
 def test_the_timed_displacement_is_the_same(device: Any) -> None:
     """Without stages, into bytes: of the same decisions."""
     case = oracle.build("displacement-slope")
-    staged, timed, packed = (drawn(case, device, **options) for options in ({}, {"stages": False}, {"packed": True}))
+    staged, timed, packed = (drawing(case, device, **options) for options in ({}, {"stages": False}, {"packed": True}))
     assert timed.stages == {}
     for other in (timed, packed):
         different = (abs(staged.color - other.color) > 1.0 / 255.0).any(axis=-1)
@@ -49,7 +49,7 @@ def test_the_timed_displacement_is_the_same(device: Any) -> None:
 @pytest.mark.parametrize("name", ["shadows-depths", "shadows-soft", "shadows-thin"])
 def test_the_timed_shadows_are_nearly_the_same(name: str, device: Any) -> None:
     """The sampler's own filter, bytes between the passes: a mix of two rounded twice, 8 bits of colour and light."""
-    staged, timed = (drawn(oracle.build(name), device, stages=stages) for stages in (True, False))
+    staged, timed = (drawing(oracle.build(name), device, stages=stages) for stages in (True, False))
     np.testing.assert_array_equal(staged.depth, timed.depth)
     assert abs(staged.color - timed.color).max() < 0.03
     assert abs(staged.color - timed.color).mean() < 0.003
@@ -60,14 +60,14 @@ def test_the_timed_shadows_are_nearly_the_same(name: str, device: Any) -> None:
     [("displacement-box", "relief"), ("shadows-direct", "grid")],
 )
 def test_what_is_not_ported_is_refused_with_its_feature(name: str, method: str, device: Any) -> None:
-    from ibr_ref.ports.__main__ import draw
     from ibr_ref.ports.described import described
+    from ibr_ref.ports.drawing import drawn
 
     case = oracle.build(name)
     exported = described(case.method, case.scene, case.params, **case.inputs)
     exported.params.method = method
     with pytest.raises(ValueError, match=f"method = '{method}': the port allows"):
-        draw(exported, device)
+        drawn(exported, "glsl", device)
 
 
 def test_from_the_command_line(device: Any, tmp_path: Path) -> None:

@@ -18,12 +18,12 @@ from tests.oracle.displacement.test_cases import MOST_UNDECIDED, WALLS
 
 def examined(case: Case, device: Any, work: Path, **options: Any) -> Examination:
     """Export, draw from the folder, read what was written, judge by the tightest profile that explains it."""
-    from ibr_ref.ports.__main__ import draw, write
     from ibr_ref.ports.case_folder import read_case
+    from ibr_ref.ports.drawing import Drawer, drawn
 
     oracle.export(case, work / "cases" / case.name)
-    given = read_case(work / "cases" / case.name)
-    write(draw(given, device, **options), given, work / "port")
+    drawer = Drawer("glsl", "", {"profile": "gl"}, lambda folder: drawn(read_case(folder), "glsl", device, **options))
+    drawer.into(work / "cases" / case.name, work / "port")
     loaded = oracle.load_case(work / "cases" / case.name)
     submission = oracle.load_submission(work / "port", loaded)
     assert submission.profile == "gl"

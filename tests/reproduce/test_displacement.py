@@ -9,8 +9,9 @@ import pytest
 
 from ibr_ref import io, models
 from ibr_ref.displacement import Params, Scene, render
+from ibr_ref.displacement import measures as measure
 from ibr_ref.displacement.inputs import METHODS
-from ibr_ref.reproduce.displacement import REPRODUCTION, figures_3_and_6, measure, table_1
+from ibr_ref.reproduce.displacement import REPRODUCTION, figures_3_and_6, table_1
 from ibr_ref.reproduce.displacement.scenes import looking_at, spikes
 from ibr_ref.reproduce.displacement.systems import SYSTEMS
 from ibr_ref.reproduce.findings import Found
@@ -73,7 +74,7 @@ def test_walls_are_the_sides_of_the_box(box: Scene) -> None:
 @pytest.mark.parametrize(("method", "expected"), [("texture", 0.0), ("welsh", 1.0)])
 def test_fetches_of_systems_that_never_search(box: Scene, method: str, expected: float) -> None:
     system = next(system for system in SYSTEMS if system.params.method == method)
-    assert measure.fetches(system, render(box, system.params)) == expected
+    assert measure.fetches(system.params, render(box, system.params)) == expected
 
 
 def test_fetches_of_a_search_that_finds_nothing_are_all_its_steps() -> None:
@@ -82,7 +83,7 @@ def test_fetches_of_a_search_that_finds_nothing_are_all_its_steps() -> None:
         height_map=np.zeros((4, 4)), color_map=np.ones((2, 2, 3)),
     ), (0.65, -1.2, 0.75), size=SMALL)  # fmt: skip
     system = next(system for system in SYSTEMS if system.name == "protruded, N = 10")
-    assert measure.fetches(system, render(flat, system.params)) == 11.0
+    assert measure.fetches(system.params, render(flat, system.params)) == 11.0
 
 
 def test_spikes_are_narrow_and_tall() -> None:

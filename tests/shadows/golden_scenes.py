@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ibr_ref import shadows
 from ibr_ref.io import Frame
 from ibr_ref.scene import Camera, Mesh
-from ibr_ref.shadows import AreaLight, Maps, Params, Scene, prepare
+from ibr_ref.shadows import AreaLight, Caster, Ensemble, Maps, Params, Scene, prepare, prepare_ensemble
 from tests.shadows.scenes import ball, box, plate
 
 __all__ = ["SCENES", "TINY", "render"]
@@ -24,8 +24,15 @@ def prepared(scene: Scene, params: Params) -> Maps | None:
     return prepare(scene, params, controls="bounds") if params.method == "warp" else None
 
 
-def render(scene: Scene, params: Params) -> Frame:
+def prepared_for_all(ensemble: Ensemble, params: Params) -> list[list[Maps]] | None:
+    """The same for each caster and light."""
+    return prepare_ensemble(ensemble, params, controls="bounds") if params.method == "warp" else None
+
+
+def render(scene: Scene | Ensemble, params: Params) -> Frame:
     """Whatever the default placement is."""
+    if isinstance(scene, Ensemble):
+        return shadows.render_ensemble(scene, params, maps=prepared_for_all(scene, params))
     return shadows.render(scene, params, maps=prepared(scene, params))
 
 
@@ -118,6 +125,25 @@ def wavelets(width: int, height: int) -> tuple[Scene, Params]:
     )
 
 
-SCENES: dict[str, Callable[[int, int], tuple[Scene, Params]]] = {
-    scene.__name__: scene for scene in (soft, nearest, direct, grid, wavelets)
+def ensemble(width: int, height: int) -> tuple[Ensemble, Params]:
+    """A cube and a ball, on axes of their own, under two lights, the second one at half its power."""
+    cube = Caster(mesh=painted(box(0.4), 1), offset_range=((-0.9, 0.9), (-0.7, 0.8)), offset=(-0.5, -0.2))
+    globe = Caster(
+        mesh=ball(0.4, 12), offset_axes=((1.0, 0.2, 0.0), (0.3, 0.8, 0.0)), offset_range=((-0.5, 0.7), (-0.6, 0.7)),
+        offset=(0.45, 0.3),
+    )  # fmt: skip
+    both = Ensemble(
+        receivers=[plate(5.0, -1.0, color=(0.6, 0.7, 0.5))],
+        casters=[cube, globe],
+        lights=[lamp(), lamp(position=(-1.2, 0.6, 3.0), half_edges=((0.2, 0.0, 0.0), (0.0, 0.2, 0.0)))],
+        powers=(1.0, 0.5),
+        camera=looking(width, height, eye=(1.5, -3.5, 2.5)),
+        ambient=0.1,
+        background=(0.2, 0.3, 0.5),
+    )
+    return both, Params(map_size=sizes(width), rows=4, columns=3, light_samples=5)
+
+
+SCENES: dict[str, Callable[[int, int], tuple[Scene | Ensemble, Params]]] = {
+    scene.__name__: scene for scene in (soft, nearest, direct, grid, wavelets, ensemble)
 }

@@ -9,14 +9,18 @@ from numpy.typing import NDArray
 
 from ibr_ref import shadows
 from ibr_ref.io import Frame
-from ibr_ref.shadows import Params, Scene
+from ibr_ref.shadows import Ensemble, Params, Scene
 from tests.agreement import arrays_of, check_without_stages, differences, flat
+from tests.naive import shadow_ensemble as naive_ensemble
 from tests.naive import shadows as naive
-from tests.shadows.golden_scenes import prepared
+from tests.shadows.golden_scenes import prepared, prepared_for_all
 
 
-def render(scene: Scene, params: Params) -> Any:
+def render(scene: Scene | Ensemble, params: Params) -> Any:
     """(stages, color, depth), with the controls that the package places."""
+    if isinstance(scene, Ensemble):
+        all_maps = prepared_for_all(scene, params)
+        return naive_ensemble.render(scene, params, all_maps and [[m.controls for m in row] for row in all_maps])
     maps = prepared(scene, params)
     return naive.render(scene, params, None if maps is None else maps.controls)
 

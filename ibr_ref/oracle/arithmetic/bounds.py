@@ -34,14 +34,21 @@ class Bounds(Choices):
     def number(self, x: Any) -> Any:
         """What is uploaded: rounded once. Textures stay arrays: their rounding is counted where they are filtered."""
         x = np.asarray(x, np.float64)
-        if x.ndim >= 2:
-            return x
-        return Number(self, x, np.abs(x - x.astype(np.float32)))
+        return x if x.ndim >= 2 else self.texels(x)
 
     def matrix(self, x: Any) -> Number:
         """A matrix that is uploaded."""
+        return self.texels(x)
+
+    def texels(self, x: Any) -> Number:
+        """A texture that is fetched texel by texel."""
         x = np.asarray(x, np.float64)
-        return Number(self, x, np.abs(x - x.astype(np.float32)))
+        return Number(self, x, _from_float(x))
+
+    @property
+    def minus_one(self) -> bool:
+        """Whether clip z may start at -w."""
+        return self.device.minus_one
 
     def lanes(self, x: Any, lane: Ints) -> Number:
         """A row for each lane."""
@@ -58,9 +65,11 @@ class Bounds(Choices):
         return Number(self, number.value, 0.0, slopes, number.lane)
 
     def rounded(self, x: Number, units: float) -> Number:
-        """After a rounding; an exact 0 stays exact."""
+        """After a rounding; an exact 0 stays exact, and so do floats where rounding is correct (IEEE 754-2019, 4.3)."""
         size = np.abs(x.value) + x.deviation
         added = units * UNIT * size + TINY * (size > 0.0)
+        if units <= 1.0 and not x.deviation.all():
+            added = np.where((x.deviation == 0.0) & (size >= TINY), _from_float(x.value), added)
         result = Number(self, x.value, x.error + added, x.slopes, x.lane)
         result._deviation = x.deviation + added
         return result
@@ -98,7 +107,10 @@ class Bounds(Choices):
         first, second = self.of(a), self.of(b)
         if self.device.operation <= 1.0 and (_is(first, 1.0) or _is(second, 1.0)):
             return second if _is(first, 1.0) else first
-        return self.rounded(self.product(first, second), self.device.operation)
+        found = self.product(first, second)
+        if self.device.operation <= 1.0 and (_is_binary(first) or _is_binary(second)):
+            return found
+        return self.rounded(found, self.device.operation)
 
     def quotient(self, a: Any, b: Any) -> Number:
         """A / b, not rounded: (a - q b) / b with q = the quotient of the values, to first order over b's value."""
@@ -116,9 +128,8 @@ class Bounds(Choices):
     def divide(self, a: Any, b: Any) -> Number:
         """A / b; by a constant power of two it is exact."""
         b = self.of(b)
-        exact = b.value.ndim == 0 and np.frexp(b.value)[0] == 0.5 and not b.deviation
         found = self.quotient(a, b)
-        return found if exact else self.rounded(found, self.device.quotient)
+        return found if _is_binary(b) else self.rounded(found, self.device.quotient)
 
     def root(self, a: Any) -> Number:
         """sqrt(x + d) = r + d / 2r - d^2 / 2r (r + sqrt(x + d))^2."""
@@ -132,10 +143,10 @@ class Bounds(Choices):
             slopes = {k: np.where(linear, s / (2.0 * r), 0.0) for k, s in a.slopes.items()}
         return self.rounded(Number(self, r, error, slopes, a.lane), self.device.root)
 
-    def sum(self, terms: Sequence[Any]) -> Number:
+    def sum(self, terms: Sequence[Any], shape: tuple[int, ...] = ()) -> Number:
         """In any order: n roundings of the sum of the sizes."""
         terms = [self.of(t) for t in terms]
-        shape = np.broadcast_shapes(*(t.shape for t in terms))
+        shape = np.broadcast_shapes(shape, *(t.shape for t in terms))
         terms = [t for t in terms if not _is(t, 0.0)] or [self.of(np.zeros(shape))]
         total = reduce(Number.plus, terms)
         size = reduce(np.add, [np.abs(t.value) + t.deviation for t in terms])
@@ -143,8 +154,12 @@ class Bounds(Choices):
         return Number(self, total.value + np.zeros(shape), error, total.slopes, total.lane)
 
     def dot(self, a: Sequence[Any], b: Sequence[Any]) -> Number:
-        """The sum of products, fused or not."""
-        return self.sum([self.multiply(x, y) for x, y in zip(a, b, strict=True)])
+        """The sum of products, fused or not; where rounding is correct, 0 x is no term."""
+        pairs = [(self.of(x), self.of(y)) for x, y in zip(a, b, strict=True)]
+        shape = np.broadcast_shapes(*(x.shape for pair in pairs for x in pair))
+        if self.device.operation <= 1.0:
+            pairs = [pair for pair in pairs if not any(_is(x, 0.0) for x in pair)]
+        return self.sum([self.multiply(x, y) for x, y in pairs] or [0.0], shape)
 
     def lerp(self, a: Any, b: Any, f: Any) -> Number:
         """A (1 - f) + b f, or a + (b - a) f."""
@@ -205,6 +220,18 @@ class Bounds(Choices):
     def color(self, color: Any) -> Any:
         """A colour: bytes are judged where they are read."""
         return color
+
+
+def _from_float(x: Any) -> Any:
+    """How far numbers are from the nearest float32."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        off = np.abs(x - x.astype(np.float32))
+    return np.where(np.isfinite(off), off, 0.0)
+
+
+def _is_binary(x: Number) -> bool:
+    """A power of two that is the same everywhere, and exact: products with it and quotients by it are exact."""
+    return x.value.ndim == 0 and not x.deviation and np.frexp(x.value)[0] == 0.5
 
 
 def _is(x: Number, number: float) -> bool:

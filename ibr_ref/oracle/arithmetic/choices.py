@@ -114,10 +114,12 @@ class Choices(Decisions):
 
     def between(self, x: Number, low: Any, high: Any) -> Number:
         """What is known to lie between two ends, where that says much more than its own bound; the value stays if it may."""
+        low, high = self.of(low).low, self.of(high).high
         with np.errstate(invalid="ignore"):
             inside = (low <= x.value) & (x.value <= high)
             value = np.where(inside, x.value, 0.5 * (low + high))
             error = np.maximum(high - value, value - low) + 2.0**-52 * np.abs(value)
+            error = np.where(np.isnan(error), np.inf, error)
             wide = ~(x.deviation <= 2.0 * error)
         slopes = {k: np.where(wide, 0.0, s) for k, s in x.slopes.items()}
         return Number(self, np.where(wide, value, x.value), np.where(wide, error, x.error), slopes, x.lane)
@@ -126,6 +128,31 @@ class Choices(Decisions):
         """What is decided to be >= `least` (`up`), or <= -`least`."""
         above, below = (self.rising(f, x) for f in (lambda v: np.maximum(v, least), lambda v: np.minimum(v, -least)))
         return self.where(up, above, below)
+
+    def rows(self, x: Any, at: Ints) -> Any:
+        """Rows of a number, or of each component of a vector, a lane each where lanes are followed."""
+        if isinstance(x, list):
+            return [self.rows(each, at) for each in x]
+        return self.of(x)[at].each(lambda v: v, np.arange(len(at)) if self.following else None)
+
+    def blank(self, like: Any, shape: tuple[int, ...]) -> Any:
+        """Zeros of the same kind."""
+        return (
+            Number(self, np.zeros(shape), np.zeros(shape)) if isinstance(like, Number) else np.zeros(shape, like.dtype)
+        )
+
+    def alike(self, a: Any, b: Any) -> Any:
+        """Which of two uploaded numbers are the same on every device: those that are the same here."""
+        return np.asarray(self.of(a).value == self.of(b).value)
+
+    def missing(self, x: Any) -> Any:
+        """Which are no numbers."""
+        return np.isnan(self.of(x).value)
+
+    def settled(self, x: Any, *others: Any) -> Number:
+        """With the symbols that others have, the rest in its error: what a loop carries on, or it drags on all of them."""
+        known = {name for other in others for name in self.of(other).slopes}
+        return self.of(x).absorbed(tuple(known))
 
     def in_lanes(self, x: Any, like: Any) -> Number:
         """A number of the whole case for each row of `like`: what is decided of it is decided lane by lane, both ways."""

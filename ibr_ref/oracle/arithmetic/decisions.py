@@ -24,7 +24,9 @@ class Decisions:
 
     def __init__(self) -> None:
         self.names: dict[str, int] = {}
-        self.rows = 0  # that have been run, forks and all
+        self.rows_run = 0  # forks and all
+        self.following = False
+        self.journal: list[tuple[str, Any]] | None = None
         self.begin(np.zeros(1, np.int64))
 
     @staticmethod
@@ -48,6 +50,12 @@ class Decisions:
         self.asked = np.zeros(count, np.int64)
         self.lost: Bools = np.zeros(count, np.bool_)
         self.forks: list[tuple[Any, Any, Any]] = []
+
+    def told(self, step: str, x: Any) -> Any:
+        """What a trace tells of: written down where one is kept."""
+        if self.journal is not None:
+            self.journal.append((step, x))
+        return x
 
     def decide(self, truth: Truth) -> Bools:
         """Outcomes; the lanes where both are possible take the given one, or true, and leave false to a fork."""
@@ -78,10 +86,11 @@ class Decisions:
     def follow(self, program: Callable[[Ints], dict[str, Any]], count: int) -> tuple[Outcomes, Ints]:
         """All legal outcomes of a program of lane origins, with "origin"; and the lanes that are lost."""
         origin, taken, known, names = np.arange(count), None, None, self.names
+        self.following = True
         paths, lost, parts = np.zeros(count, np.int64), np.zeros(count, np.bool_), []
         while True:
             self.begin(origin, taken, known)
-            self.rows += len(origin)
+            self.rows_run += len(origin)
             self.names = dict(names)  # another run's symbols have other names, a fork's the same
             parts.append({"origin": origin, **program(origin)})
             lost[origin[self.lost]] = True
@@ -93,6 +102,7 @@ class Decisions:
             origin, taken, known = (each[~lost[origin]] for each in (origin, taken, known))
             if not len(origin):
                 break
+        self.following = False
         outcomes = {name: joined([part[name] for part in parts]) for name in parts[0]}
         return outcomes, np.flatnonzero(lost)
 

@@ -73,6 +73,7 @@ class Arithmetic:
     """Operations as a policy makes them. Arguments are numbers or arrays that broadcast."""
 
     bounded = False
+    minus_one = False
 
     def __init__(self, policy: Policy) -> None:
         self.policy = policy
@@ -86,7 +87,15 @@ class Arithmetic:
         """A matrix as it is uploaded."""
         return self.number(value)
 
+    def texels(self, value: ArrayLike) -> Floats:
+        """A texture as it is uploaded, to be fetched texel by texel."""
+        return self.number(value)
+
     # --- What only bounds need to be told -----------------------------------------------------------------------------
+
+    def told(self, step: str, x: Any) -> Any:
+        """What a trace tells of: a number, a vector, a comparison."""
+        return x
 
     def named(self, name: str, x: Any) -> Any:
         """What is used again."""
@@ -108,6 +117,14 @@ class Arithmetic:
         """What is decided to be >= `least` (`up`), or <= -`least`."""
         return x
 
+    def between(self, x: Any, low: Any, high: Any) -> Any:
+        """What is known to lie between two ends."""
+        return x
+
+    def settled(self, x: Any, *others: Any) -> Any:
+        """What a loop carries on."""
+        return x
+
     def in_lanes(self, x: Any, like: Any) -> Any:
         """A number of the whole case for each row of `like`."""
         return np.broadcast_to(x, np.shape(like))
@@ -116,7 +133,31 @@ class Arithmetic:
         """Whether something holds for all rows."""
         return bool(np.all(truth))
 
+    def border(self, x: Any, sides: float = 1.0) -> Any:
+        """What may be off by the borders that devices give to splats, as many."""
+        return x
+
+    def alike(self, a: Any, b: Any) -> Any:
+        """Which of two uploaded numbers are the same."""
+        return a == b
+
+    def missing(self, x: Any) -> Any:
+        """Which are no numbers."""
+        return np.isnan(x)
+
+    def rising(self, f: Callable[[Any], Any], x: Any) -> Any:
+        """A function that nowhere falls."""
+        return f(x)
+
     # --- Rows ---------------------------------------------------------------------------------------------------------
+
+    def rows(self, x: Any, at: Any) -> Any:
+        """Rows of a number, or of each component of a vector: what each lane has."""
+        return [each[at] for each in x] if isinstance(x, list) else x[at]
+
+    def blank(self, like: Any, shape: tuple[int, ...]) -> Any:
+        """Zeros of the same kind."""
+        return np.zeros(shape, like.dtype)
 
     def replaced(self, x: Any, where: Any, by: Any) -> Any:
         """With other rows at some places."""
@@ -268,6 +309,10 @@ class Arithmetic:
             return self.number(depth)
         most = 2.0**self.policy.depth_bits - 1.0
         return np.asarray(np.floor(np.clip(depth, 0.0, 1.0) * most + 0.5) / most, np.float64)
+
+    def flat_depth(self, depth: ArrayLike) -> Floats:
+        """The depth of a primitive that has one, as the depth buffer holds it."""
+        return self.depth(depth)
 
     def color(self, color: ArrayLike) -> Floats:
         """A colour as the frame buffer holds it: bytes are given back as k / 255."""

@@ -54,8 +54,10 @@ class Number(_Speaks):
     def deviation(self) -> Any:
         """How far a legal number may be from the value."""
         if self._deviation is None:
-            found = reduce(np.add, [np.abs(s) for s in self.slopes.values()], self.error)
-            self._deviation = np.where(np.isnan(found), np.inf, found)  # a slope without an end, times nothing
+            self._deviation = self.error
+            if self.slopes:
+                found = reduce(np.add, [np.abs(s) for s in self.slopes.values()], self.error)
+                self._deviation = np.where(np.isnan(found), np.inf, found)  # a slope without an end, times nothing
         return self._deviation
 
     @property
@@ -182,7 +184,7 @@ class Number(_Speaks):
         with np.errstate(invalid="ignore"):
             # Said the other way round: what is no number may be anything.
             may, must = (~(value + off <= 0), value - off > 0) if strict else (~(value + off < 0), value - off >= 0)
-        return Truth(self.ops, may, must, gap.lane, value)
+        return Truth(self.ops, may, must, gap.lane, value, off)
 
     def __gt__(self, other: Any) -> Truth:
         return self.truth(other, 1.0, True)
@@ -206,13 +208,17 @@ class Number(_Speaks):
 
 
 class Truth(_Speaks):
-    """What a comparison, or several together, may and must be; `margin` of a single one, positive where it holds."""
+    """What a comparison, or several together, may and must be; `margin` of a single one, positive where it holds.
 
-    __slots__ = ("lane", "margin", "may", "must", "ops", "outcome")
+    bound: how far a device may move the margin.
+    """
+
+    __slots__ = ("bound", "lane", "margin", "may", "must", "ops", "outcome")
     dtype = np.dtype(np.bool_)
 
-    def __init__(self, ops: Any, may: Any, must: Any, lane: Any, margin: Any = None) -> None:
-        self.ops, self.may, self.must, self.lane, self.margin = ops, np.asarray(may), np.asarray(must), lane, margin
+    def __init__(self, ops: Any, may: Any, must: Any, lane: Any, margin: Any = None, bound: Any = None) -> None:
+        self.ops, self.may, self.must, self.lane = ops, np.asarray(may), np.asarray(must), lane
+        self.margin, self.bound = margin, bound
         self.outcome: Any = None
 
     @property
@@ -227,8 +233,12 @@ class Truth(_Speaks):
         return np.asarray(self.outcome, np.bool_)
 
     def _with(self, other: Any, f: Callable[[Any, Any], Any]) -> Truth:
-        other = other if isinstance(other, Truth) else Truth(self.ops, other, other, None)
-        return Truth(self.ops, f(self._may, other._may), f(self._must, other._must), self.ops.lane(self, other))
+        if isinstance(other, Truth):
+            return Truth(self.ops, f(self._may, other._may), f(self._must, other._must), self.ops.lane(self, other))
+        margin = self.margin
+        if margin is not None:  # what is known beside it decides alone, or not at all
+            margin = np.where(other, margin, -np.inf) if f is np.logical_and else np.where(other, np.inf, margin)
+        return Truth(self.ops, f(self._may, other), f(self._must, other), self.lane, margin, self.bound)
 
     @property
     def _may(self) -> Any:
@@ -248,7 +258,8 @@ class Truth(_Speaks):
     __rand__, __ror__ = __and__, __or__
 
     def __invert__(self) -> Truth:
-        return Truth(self.ops, ~self._must, ~self._may, self.lane, None if self.margin is None else -self.margin)
+        margin = None if self.margin is None else -self.margin
+        return Truth(self.ops, ~self._must, ~self._may, self.lane, margin, self.bound)
 
     def __bool__(self) -> bool:
         return bool(np.all(self.decided()))
@@ -261,6 +272,13 @@ class Truth(_Speaks):
 
     def __len__(self) -> int:
         return self.shape[0]
+
+
+def may_and_must(condition: Any) -> tuple[Bools, Bools]:
+    """Of a comparison, or of what is decided anyway."""
+    ends = (condition.may, condition.must) if isinstance(condition, Truth) else (condition, condition)
+    may, must = (np.asarray(end, np.bool_) for end in ends)
+    return may, must
 
 
 def slope(symbol: str) -> Callable[[Number], Any]:

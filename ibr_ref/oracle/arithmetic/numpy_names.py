@@ -83,6 +83,7 @@ UFUNCS: dict[Any, Callable[..., Any]] = {
     np.minimum: lambda ops, a, b: ops.least(a, b),
     np.sqrt: lambda ops, a: ops.root(a),
     np.floor: lambda ops, a: ops.rising(np.floor, a),
+    np.ceil: lambda ops, a: ops.rising(np.ceil, a),
     np.rint: lambda ops, a: ops.rising(np.rint, a),
     np.power: _power,
     np.isfinite: lambda ops, a: np.isfinite(a.value),

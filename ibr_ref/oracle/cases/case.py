@@ -59,6 +59,11 @@ class Case:
 
         return power.undecided(self)
 
+    @property
+    def system(self) -> str:
+        """Which of those that its method's referee judges."""
+        return str(getattr(self.params, methods.named(self.method).judged[0]))
+
     def draw(self, *, stages: bool) -> Frame:
         """What the reference draws; without stages the same picture and depth sooner."""
         render = methods.named(self.method).package.open().render

@@ -57,6 +57,11 @@ def _hills(rows: int, columns: int) -> Floats:
     return heights
 
 
+def _rolling() -> Floats:
+    """Smooth hills in 0.15 ... 0.95, without an edge."""
+    return _smooth((40, 56), 0.15, 0.95, 0.1)
+
+
 def _sheared(**more: Any) -> BasePolygon:
     """A tilted parallelogram, longer than wide, away from the origin, with a map that is no square, and a facade."""
     values = {
@@ -256,6 +261,17 @@ def loose() -> Case:
     )
 
 
+def sliver() -> Case:
+    """Clipping at the picture's border."""
+    camera = _looking(eye=(0.48, -2.03, 1.19), target=(1.0534, -0.42, 0.02), vertical_fov=32.0)
+    scene = Scene(polygons=[_gentle(height_scale=0.2)], camera=camera, light=Light(position=(1.8, 1.4, 1.5)))
+    about = (
+        "A corner a thirtieth of a pixel beside the picture: faces that are cut there leave a sliver, with poor planes."
+    )
+    params = _params(linear_steps=16, binary_steps=4, shadow_steps=2, shadow_bias=0.02)
+    return _case("sliver", "adversarial", about, scene, params, "gl")
+
+
 def _rim() -> BasePolygon:
     """Low ground with a ridge along its far border and a bank along a side: what is high is at the very edge of the map."""
     heights = _smooth((40, 48), 0.08, 0.31, 0.2)
@@ -275,6 +291,67 @@ def rim() -> Case:
     return _case("rim", "adversarial", about, scene, _params(linear_steps=40, binary_steps=2, shadow_steps=2))
 
 
+def relief() -> Case:
+    """Policarpo et al. 2005."""
+    camera = _looking(eye=(2.4, -1.6, 1.3), target=(1.25, -0.3, -0.05), vertical_fov=36.0)
+    light = Light(position=(1.0, -1.4, 1.5), diffuse=1.2, specular=0.6, exponent=11)
+    scene = Scene(polygons=[_sheared(height_map=_rolling())], camera=camera, light=light, background=(0.11, 0.31, 0.2))
+    about = "Relief mapping: steep hills sunk below a tilted parallelogram, a binary search, self-shadow under a lamp."
+    return _case(
+        "relief", "typical", about, scene, _params(method="relief", linear_steps=24, binary_steps=4, shadow_steps=5)
+    )
+
+
+def parallax() -> Case:
+    """Welsh 2004."""
+    camera = _looking(eye=(0.2, -1.9, 1.2), target=(1.2, -0.35, 0.1), vertical_fov=42.0)
+    polygon = _sheared(
+        height_map=_noise(9, 12, seed=4), normal_map=0.4 + 0.5 * _noise(7, 5, 3, seed=3), domain="repeat"
+    )
+    scene = Scene(polygons=[polygon], camera=camera, light=Light(direction=(0.4, -0.5, 1.0), specular=0.4, exponent=6))
+    about = "Parallax mapping with offset limiting: a normal map and repeated heights, one step along the polygon."
+    return _case("parallax", "easy", about, scene, _params(method="welsh"))
+
+
+def steep() -> Case:
+    """McGuire & McGuire 2005."""
+    camera = _looking(eye=(2.4, -1.6, 1.3), target=(1.3, -0.35, 0.0), vertical_fov=30.0)
+    scene = Scene(polygons=[_sheared()], camera=camera, light=Light(direction=(0.3, -0.5, 1.0)))
+    about = "Steep parallax mapping: a wall, a block and a needle in equal steps, more of them at a grazing angle."
+    return _case("steep", "typical", about, scene, _params(method="mcguire", linear_steps=20, lod_bias=0.0))
+
+
+def occlusion() -> Case:
+    """Tatarchuk 2005."""
+    camera = _looking(eye=(0.6, -1.7, 1.3), target=(1.2, -0.35, 0.0), vertical_fov=48.0)
+    scene = Scene(
+        polygons=[_sheared(height_map=_rolling())], camera=camera, light=Light(direction=(0.9, 0.6, 0.8), specular=0.3)
+    )
+    about = "Parallax occlusion mapping: steps by the angle of view, a secant between the last two, self-shadow."
+    params = _params(method="tatarchuk", min_steps=8, max_steps=32, shadow_steps=4, shadow_bias=0.01)
+    return _case("occlusion", "typical", about, scene, params)
+
+
+def cone() -> Case:
+    """Dummer 2006."""
+    camera = _looking(eye=(2.4, -1.6, 1.3), target=(1.3, -0.35, 0.1), vertical_fov=30.0)
+    scene = Scene(
+        polygons=[_sheared(height_map=_rolling())],
+        camera=camera,
+        light=Light(direction=(0.3, -0.5, 1.0), specular=0.2, exponent=4),
+    )
+    about = "Cone step mapping over smooth hills: each step as far as the cone over the texel is empty."
+    return _case("cone", "typical", about, scene, _params(method="cone", linear_steps=12))
+
+
+def relaxed() -> Case:
+    """Policarpo & Oliveira 2007."""
+    camera = _looking(eye=(0.2, -1.9, 1.2), target=(1.2, -0.4, 0.1), vertical_fov=44.0)
+    scene = Scene(polygons=[_sheared(height_map=_rolling())], camera=camera, light=Light(position=(1.8, 1.4, 1.5)))
+    about = "Relaxed cones over smooth hills: steps that end below the surface, then halvings of the whole way."
+    return _case("relaxed", "typical", about, scene, _params(method="relaxed_cone", linear_steps=8, binary_steps=6))
+
+
 def metropolis() -> Case:
     """A picture of real size."""
     camera = _looking(eye=(2.6, -3.14, 2.02), target=(0.0, 0.0, 0.0), vertical_fov=52.0, width=640, height=480)
@@ -289,7 +366,7 @@ CASES: dict[str, Callable[[], Case]] = {
     f"displacement-{make.__name__}": make
     for make in (
         box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing,
-        borders, rim, metropolis,
+        borders, rim, sliver, relief, parallax, steep, occlusion, cone, relaxed, metropolis,
     )
 }  # fmt: skip
 """By name."""

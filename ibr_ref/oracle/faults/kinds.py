@@ -51,3 +51,9 @@ class Mutant:
     """Why no case can kill it with stages; empty: it should be killed."""
     hidden: str = ""
     """Why the final image alone cannot show it."""
+    only: tuple[str, ...] = ()
+    """The systems (`Method.judged`) that it is a bug of; empty: all."""
+
+    def applies(self, system: str) -> bool:
+        """Whether a port of the system can have it."""
+        return not self.only or system in self.only

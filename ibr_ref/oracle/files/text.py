@@ -115,5 +115,6 @@ def _expected(document: Document) -> str:
         lines += ["", '"own": a discarded fragment or point leaves there what any other has.']
     lines += ["", _JUDGED_ON]
     if margins:
-        lines += ["", f"How close the reference's decisions were, which you need not hand in: {', '.join(margins)}."]
+        known = "How close the reference's decisions were, and what they cost, which you need not hand in"
+        lines += ["", f"{known}: {', '.join(margins)}."]
     return "\n".join(lines)

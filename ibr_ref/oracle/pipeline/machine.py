@@ -1,4 +1,4 @@
-"""Bounds with a texture unit: all that a shader's program calls."""
+"""Bounds with a texture unit and what rasterizers do by themselves: all that a program calls."""
 
 from __future__ import annotations
 
@@ -9,11 +9,16 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.array_types import Ints
+from ibr_ref.oracle.accept.coverage import RASTER
 from ibr_ref.oracle.accept.fetch import Texture
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import Device
+from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.pipeline.texture import below_highest, fetch, texel_position
+
+SETUP_QUOTIENTS, SETUP_OPERATIONS = 2.0, 5.0
+"""Of a rasterizer's depth against z / w of the vertex stage: a division in either; the viewport's product and sum, and the
+plane's two products and sum. All of them on numbers of at most 1."""
 
 
 class Machine(Bounds):
@@ -42,6 +47,32 @@ class Machine(Bounds):
     def below_highest(self, texels: Any, u: Any, v: Any, h: Any, repeat: bool) -> Ints:
         """The samples that are not certainly above every texel around them."""
         return below_highest(self, self._texture(texels, repeat), self.of(u), self.of(v), self.of(h))
+
+    def snap(self, window: Any) -> Number:
+        """A window position on the raster, as the reference has it; what devices do otherwise is in their borders."""
+        return self.rising(lambda x: np.rint(RASTER * x) / RASTER, window)
+
+    def border(self, x: Any, sides: float = 1.0) -> Number:
+        """What may be off by the borders that devices give to splats, as many."""
+        x = self.of(x)
+        return Number(self, x.value, x.error + sides * self.device.splat_border, x.slopes, x.lane)
+
+    def flat_depth(self, depth: Any) -> Number:
+        """The depth of a primitive that has one, as the depth buffer holds it.
+
+        The conventions' holds the very number, rounded to a float32; a rasterizer computes its own.
+        """
+        x, device = self.of(depth), self.device
+        if not device.subpixel_any:
+            return self.rounded(x, 1.0)
+        units = SETUP_QUOTIENTS * device.quotient + SETUP_OPERATIONS * device.operation
+        size = 1.0 if device.minus_one else np.abs(x.value)
+        return Number(self, x.value, x.error + units * UNIT * size + device.depth_step, x.slopes, x.lane)
+
+    def halfway(self, a: Any, b: Any) -> Number:
+        """(a + b)/2 not rounded: whether -w <= 2 z - w <= w is whether 0 <= z <= w."""
+        between = self.of(a).plus(b)
+        return between.each(lambda x: 0.5 * x, between.lane)
 
     def _texture(self, texels: Any, repeat: bool) -> Texture:
         key = texels.__array_interface__["data"][0], texels.shape, texels.strides, repeat

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.array_types import Bools, Floats, Ints
-from ibr_ref.oracle.accept import coverage
+from ibr_ref.oracle.accept import borders, coverage
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.number import Number
@@ -46,6 +46,8 @@ class Fragments:
     """(n, 3) shares of the corners as the reference has them."""
     rounding: Floats
     """(n, 3) of a device's arithmetic."""
+    pieces: Floats
+    """(n, 4) by how much each varying, and window depth, may be off besides where the picture's borders may cut."""
     gradient: Floats
     """(n, 3, 2) along x and y, a pixel."""
     moved: Floats
@@ -69,15 +71,19 @@ class Fragments:
         return found
 
 
-def fragments_of(program: Any, triangles: list[tuple[int, list[Any]]], polygon: int, device: Device) -> Fragments:
-    """The candidates of one polygon's triangles: faces, and corners (7,) in clip and patch space."""
+def fragments_of(program: Any, polygons: list[tuple[int, list[Any]]], polygon: int, device: Device) -> Fragments:
+    """The candidates of one polygon's faces, as clipping leaves them: numbers, and corners (7,) in clip and patch space."""
     width, height = program.width, program.height
+    triangles = program.fanned(polygons)
+    cuts = _cuts(program, polygons, device)
     corners: list[Any] = [np.stack(vertices, axis=-1) for _, vertices in triangles]  # (7, 3)
     clip = [[np.stack([c[i] for c in corners], axis=-1)] for i in (0, 1, 3)]  # (3, T): corner, triangle
     w = clip[2][0]
     x = program.window_x(program.do.divide(clip[0][0], w))
     y = program.window_y(program.do.divide(clip[1][0], w))
-    x, y = (_bounded(c, 0.5 - program.centre(), device) for c in (x, y))
+    # Where a polygon is cut its corners lie on no raster, even where the triangle's own do.
+    off = np.array([[0.0 if each is None else each.moved] for each in cuts])
+    x, y = (_bounded(c, 0.5 - program.centre(), device).widened(off) for c in (x, y))
     found = coverage.fragments(x, y, width, height, owns_border=program.owns_border)
     at_x, at_y = coverage.snapped(x)[0], coverage.snapped(y)[0]
     area = (at_x[:, 1] - at_x[:, 0]) * (at_y[:, 2] - at_y[:, 0]) - (at_y[:, 1] - at_y[:, 0]) * (at_x[:, 2] - at_x[:, 0])
@@ -85,18 +91,20 @@ def fragments_of(program: Any, triangles: list[tuple[int, list[Any]]], polygon: 
     drawn = np.array([bool(program.draws_orientation(int(np.nan_to_num(np.sign(a))))) for a in area], np.bool_)
     shift = program.varying_centre() - program.centre()
     value, rounding, gradient = _weights(found, at_x, at_y, area, device, shift)
+    values = np.array([[c.value[:, k] for k in range(3)] for c in corners]).reshape(-1, 3, 7)
+    pieces, moved = _pieces(cuts, found, (at_x, at_y, values), device)
     t, pixel = found.triangle, found.rows * width + found.columns
-    patch = np.array([[c.value[4:, k] for k in range(3)] for c in corners]).reshape(-1, 3, 3)
     result = Fragments(
         pixel=pixel,
         polygon=np.full(len(t), polygon),
         triangle=t,
         face=np.array([program.face_number(face) for face, _ in triangles], np.int64)[t],
-        certain=_surely_covered(pixel, found, patch),
+        certain=_surely_covered(pixel, found, values[..., 4:]),
         weights=value,
         rounding=rounding,
+        pieces=pieces,
         gradient=gradient,
-        moved=np.minimum(found.moved, FARTHEST),
+        moved=np.minimum(moved, FARTHEST),
     )
     return result.take(drawn[t])
 
@@ -104,6 +112,56 @@ def fragments_of(program: Any, triangles: list[tuple[int, list[Any]]], polygon: 
 def _bounded(x: Number, shift: float, device: Device) -> Bounded:
     """(T, 3) window coordinates."""
     return Bounded(x.value.T + shift, np.broadcast_to(x.deviation, x.shape).T, device)
+
+
+def _cuts(program: Any, polygons: list[tuple[int, list[Any]]], device: Device) -> list[borders.Cut | None]:
+    """Of each triangle: what the picture's borders leave of its polygon, where the device may cut it there."""
+    result: list[borders.Cut | None] = []
+    for _, corners in polygons:
+        found = None
+        if device.clip_border and corners:
+            clip, error = (
+                np.stack([np.broadcast_to(get(c), c.shape)[:4] for c in corners]) for get in (_value, _deviation)
+            )
+            found = borders.cut(clip, error, (program.width, program.height), device)
+        result += [found] * max(0, len(corners) - 2)
+    return result
+
+
+def _value(corner: Number) -> Floats:
+    return corner.value
+
+
+def _deviation(corner: Number) -> Floats:
+    return np.asarray(corner.deviation)
+
+
+def _pieces(
+    cuts: list[borders.Cut | None], found: coverage.Fragments, corners: tuple[Floats, Floats, Floats], device: Device
+) -> tuple[Floats, Floats]:
+    """(n, 4) what planes of pieces make of varyings and of depth, (n,) how far their points are moved.
+
+    corners: x and y (T, 3), and clip coordinates with the varyings (T, 3, 7). A varying is N / D, two planes, each off by
+    itself: (off N + u off D) / (D - off D).
+    """
+    off, moved = np.zeros((len(found.triangle), 4)), found.moved.copy()
+    x, y, values = corners
+    for triangle, each in enumerate(cuts):
+        if each is None:
+            continue
+        mine = np.flatnonzero(found.triangle == triangle)
+        px, py = (np.asarray(a[mine] + 0.5, np.float64) for a in (found.columns, found.rows))
+        z, w = values[triangle, :, 2], values[triangle, :, 3]
+        planes = np.column_stack([values[triangle, :, 4:], z, np.ones(3)]) / w[:, None]
+        for piece in borders.pieces(each, (x[triangle], y[triangle]), px, py, device):
+            at = mine[piece.points]
+            here, plane = found.weights[at] @ planes, piece.off(planes)
+            under = here[:, 4] - plane[:, 4]
+            apart = plane[:, :3] + np.abs(here[:, :3] / here[:, 4:]) * plane[:, 4:]
+            apart = np.where(under[:, None] > 0.0, apart / under[:, None], np.inf)
+            off[at] = np.maximum(off[at], np.nan_to_num(np.column_stack([apart, plane[:, 3]]), nan=np.inf))
+            moved[at] = np.maximum(moved[at], piece.moved)
+    return off, moved
 
 
 def _weights(

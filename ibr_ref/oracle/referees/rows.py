@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.oracle.accept.bounded import Bounded
+from ibr_ref.oracle.arithmetic.number import Number, Truth
 from ibr_ref.oracle.judgement import TraceRow
 
 CERTAIN, EITHER, DIFFERS = "certain", "either way is legal", "differs"
@@ -88,6 +89,32 @@ def told(
     mine, theirs = str(reference), "" if port is None else str(port)
     differs = not legal if legal is not None else bool(theirs) and theirs != mine
     return TraceRow(step=step, reference=mine, port=theirs, note=DIFFERS if differs else "", array=array, index=index)
+
+
+def journaled(journal: list[tuple[str, Any]]) -> list[TraceRow]:
+    """What a program has told of while it ran for one element."""
+    return [_journaled(step, x) for step, x in journal]
+
+
+def _journaled(step: str, x: Any) -> TraceRow:
+    if isinstance(x, Truth):
+        answer = bool(np.ravel(x.must)[0]) or (bool(np.ravel(x.may)[0]) and float(np.ravel(x.margin)[0]) > 0.0)
+        return compared(step, answer, float(np.ravel(x.margin)[0]), float(np.ravel(x.bound)[0]))
+    parts = x if isinstance(x, list) else [x]
+    if any(isinstance(part, Number) for part in parts):
+        return number(step, [one(part) for part in parts])
+    if np.asarray(parts[0]).dtype.kind == "b":
+        return told(step, "yes" if np.all(x) else "no")
+    return told(step, text([np.ravel(part)[0] for part in parts]))
+
+
+def one(x: Any, index: Any = 0) -> Bounded:
+    """A number with its bound, of one element."""
+    if not isinstance(x, Number):
+        return Bounded(np.asarray(np.ravel(x)[0]), np.zeros(()), None)  # type: ignore[arg-type]
+    value, error = (np.broadcast_to(each, x.shape) for each in (x.value, x.deviation))
+    at = index if x.shape else ()
+    return Bounded(np.asarray(value[at]), np.asarray(error[at]), x.ops.device)
 
 
 def heading(rows: list[TraceRow], array: str) -> TraceRow | None:

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from ibr_ref import displacement
+from ibr_ref.displacement.cone_maps import RELAXED, cone_map_of
 from ibr_ref.displacement.patch_space import uniforms
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.schema.base import (
@@ -26,6 +27,11 @@ from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_came
 from ibr_ref.oracle.schema.document import Document, Schema
 from ibr_ref.oracle.schema.light import LightFile, build_light, describe_light
 from ibr_ref.scene import BasePolygon
+from ibr_ref.scene.checks import reject
+from ibr_ref.searches import SEARCHES
+
+LEVEL = "0 in a case of mcguire: drivers make coarser levels in their own ways"
+"""Of the height map."""
 
 
 class DisplacementParams(Model):
@@ -47,7 +53,14 @@ class DisplacementParams(Model):
     """S, samples towards the light; 0: no self-shadow."""
     shadow_bias: float
     """In units of h."""
-    method: Literal["protruded"]
+    method: Literal["protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone"]
+    """The search."""
+    lod_bias: float = 1.0
+    """Level of the mip chain that "mcguire" takes heights from: 0."""
+    min_steps: int = 8
+    """Steps of "tatarchuk" where the view is straight down."""
+    max_steps: int = 50
+    """Steps of "tatarchuk" where it is horizontal."""
 
 
 class PatchSpace(Model):
@@ -82,6 +95,8 @@ class PolygonFile(Model):
     """None: normals come from the heights, by central differences."""
     facade_map: ArrayFile | None
     """None: walls take the colour map."""
+    cone_map: ArrayFile | None = None
+    """Of searches by cones alone."""
     patch_space: PatchSpace
 
 
@@ -107,19 +122,22 @@ MOST_FACES = 64
 
 
 def _describe(case: Case, inputs: Inputs) -> tuple[DisplacementParams, DisplacementScene]:
-    return DisplacementParams(**values(DisplacementParams, case.params)), _scene(case.scene, inputs)
+    params = DisplacementParams(**values(DisplacementParams, case.params))
+    if params.method == "mcguire" and params.lod_bias != 0.0:
+        raise reject("lod_bias", params.lod_bias, LEVEL)
+    return params, _scene(case.scene, params.method, inputs)
 
 
-def _scene(scene: displacement.Scene, inputs: Inputs) -> DisplacementScene:
+def _scene(scene: displacement.Scene, method: str, inputs: Inputs) -> DisplacementScene:
     return DisplacementScene(
         camera=describe_camera(scene.camera),
         light=describe_light(scene.light),
         background=numbers(scene.background),
-        polygons=tuple(_polygon(scene, i, polygon, inputs) for i, polygon in enumerate(scene.polygons)),
+        polygons=tuple(_polygon(scene, i, polygon, method, inputs) for i, polygon in enumerate(scene.polygons)),
     )
 
 
-def _polygon(scene: displacement.Scene, index: int, polygon: BasePolygon, inputs: Inputs) -> PolygonFile:
+def _polygon(scene: displacement.Scene, index: int, polygon: BasePolygon, method: str, inputs: Inputs) -> PolygonFile:
     stem = f"polygon{index}"
     optional = {
         "normal_map": (polygon.normal_map, "n = 2 c - 1 in the tangent frame, normalized after the bilinear fetch"),
@@ -140,6 +158,7 @@ def _polygon(scene: displacement.Scene, index: int, polygon: BasePolygon, inputs
             name: None if map_ is None else inputs.texture(f"{stem}.{name}", map_, meaning)
             for name, (map_, meaning) in optional.items()
         },
+        cone_map=_cones(f"{stem}.cone_map", polygon, method, inputs),
         patch_space=PatchSpace(
             axes=numbers(constants.axes),
             rows=numbers(constants.rows),
@@ -148,6 +167,13 @@ def _polygon(scene: displacement.Scene, index: int, polygon: BasePolygon, inputs
             light=numbers(constants.light),
         ),
     )
+
+
+def _cones(stem: str, polygon: BasePolygon, method: str, inputs: Inputs) -> ArrayFile | None:
+    if method not in RELAXED:
+        return None
+    meaning = "radius in (u, v) per height of the cone over each texel; filtered as the height map is"
+    return inputs.array(stem, cone_map_of(polygon, method), meaning)
 
 
 def _build(
@@ -181,16 +207,17 @@ def _built_polygon(file: PolygonFile, stored: Stored) -> BasePolygon:
 
 def _features(document: DisplacementCase) -> set[str]:
     params, scene = document.params, document.scene
+    search = SEARCHES[params.method]
     found = {
         "phong",
-        params.interval,
-        params.faces,
+        params.method,
         "shadow" if params.shadow_steps else "unshadowed",
-        "polygon_depth" if params.depth == "polygon" else "displaced",
+        "displaced" if params.depth == "displaced" and search.displaces else "polygon_depth",
     }
+    found |= {params.interval, params.faces} if "faces" in search.reads else {"sunken", "base"}
     for polygon in scene.polygons:
         found.add("heights" if polygon.normal_map is None else "normal_map")
-        if polygon.facade_map is not None:
+        if polygon.facade_map is not None and "facade_map" in search.reads:
             found.add("facade")
     if found & {"heights", "facade"}:
         found.add("gradient")

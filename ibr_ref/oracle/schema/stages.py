@@ -22,7 +22,7 @@ class StageFile(StoredFile):
     nothing: str
     """The value where nothing is: no face, no splat, no surface."""
     kind: Literal["result", "margin"]
-    """"margin": how close a decision of the reference was; ports need not hand it in."""
+    """"margin": how close a decision of the reference was, or what it cost; ports need not hand it in."""
 
 
 def contract_of(method: str) -> dict[str, StageArray]:

@@ -1,7 +1,8 @@
 """Protruded displacement mapping on OpenGL: the same inputs as `ibr_ref.displacement.render`, in float32 GLSL.
 
 The scene is that of an exported case, as case_folder.py reads it; nothing of `ibr_ref` is imported. Ported is
-method="protruded" with all intervals, domains, faces and depths, normal map, facade map and self-shadow. Per polygon the
+method="protruded" with all intervals, domains, faces and depths, normal map, facade map and self-shadow, and the searches
+below the polygon that there are cases of. Per polygon the
 host does in float64 what an application does once per object: matrices, the eye and the light in patch space, the choice of
 the faces; all else happens in the shaders.
 """
@@ -26,6 +27,8 @@ STAGES = {
     "albedo": (4, "f4"),
     "normal": (4, "f4"),
 }
+BELOW = ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone")
+"""Searches below the polygon."""
 MISS_DEPTH = np.float32(0.99999994)
 """What a discarded fragment writes as depth when stages are kept: behind any hit, in front of the cleared buffer."""
 
@@ -130,7 +133,7 @@ class Port:
         captured: list[tuple[np.ndarray, np.ndarray]] = []
         for number, polygon in enumerate(scene.polygons):
             frame = PatchFrame.of(polygon, scene)
-            faces = frame.faces(params)
+            faces = frame.faces("base" if params.method in BELOW else params.faces, params.interval)
             if len(faces):
                 draws.append(self._polygon(frame, number, faces, _Variant(params, stages, packed)))
             if stages and len(faces):
@@ -144,7 +147,8 @@ class Port:
     def _polygon(self, frame: PatchFrame, number: int, faces: np.ndarray, variant: _Variant) -> _Draw:
         """Buffers, textures and program of one polygon."""
         ctx = self.device.ctx
-        program = self._program(_defines(frame, variant, self.device.zero_to_one))
+        search = "below" if variant.params.method in BELOW else "protruded"
+        program = self._program(_defines(frame, variant, self.device.zero_to_one), search)
         vertices = ctx.buffer(faces.tobytes())
         indices = ctx.buffer(_quad_indices(len(faces)).tobytes())
         names = ("in_patch", "in_face") if variant.stages else ("in_patch",)  # what no shader reads has no location
@@ -156,10 +160,11 @@ class Port:
         owned = [vao, vertices, indices, uniforms, *textures]
         return _Draw(vao=vao, uniforms=uniforms, block=block, textures=textures, owned=owned)
 
-    def _program(self, defines: str) -> moderngl.Program:
-        """The linked program for these #defines."""
+    def _program(self, defines: str, search: str) -> moderngl.Program:
+        """The linked program for these #defines, with the search of a file."""
         if defines not in self._programs:
             vertex, fragment = (defines + gl.source(f"displacement.{kind}") for kind in ("vert", "frag"))
+            fragment = fragment.replace("#include SEARCH", gl.source(f"displacement_{search}.frag"))
             self._programs[defines] = self.device.ctx.program(vertex_shader=vertex, fragment_shader=fragment)
         return self._programs[defines]
 
@@ -191,6 +196,7 @@ def _header(defines: dict[str, object]) -> str:
 def _defines(frame: PatchFrame, variant: _Variant, zero_to_one: bool) -> str:
     """`params` and the shape of the scene as compile-time constants."""
     params = variant.params
+    below = params.method in BELOW
     defines: dict[str, object] = {
         "LINEAR_STEPS": int(params.linear_steps),
         "BINARY_STEPS": int(params.binary_steps),
@@ -198,17 +204,21 @@ def _defines(frame: PatchFrame, variant: _Variant, zero_to_one: bool) -> str:
         "SHADOW_BIAS": f"float({float(params.shadow_bias)!r})",
         "STEEP_THRESHOLD": f"float({float(params.steep_threshold)!r})",
         "EXPONENT": int(frame.scene.light.exponent),
+        "MIN_STEPS": int(params.min_steps),
+        "MAX_STEPS": int(params.max_steps),
+        "FLOOR": "-1.0" if below and params.method != "welsh" else "0.0",
     }
     flags = {
         "HAS_NORMAL_MAP": frame.polygon.normal_map is not None,
-        "HAS_FACADE_MAP": frame.polygon.facade_map is not None,
+        "HAS_FACADE_MAP": frame.polygon.facade_map is not None and not below,
         "HAS_SPECULAR": frame.scene.light.specular != 0,
-        "POLYGON_DEPTH": params.depth == "polygon",
+        "POLYGON_DEPTH": params.depth == "polygon" or params.method == "welsh",
         "PACKED_HEIGHTS": variant.packed,
         "REPEAT": frame.polygon.domain == "repeat",
         "VOLUME": params.interval == "volume",
         "STAGES": variant.stages,
         "ZERO_TO_ONE": zero_to_one,
+        params.method.upper(): below,
     }
     return _header(defines | {name: 1 for name, present in flags.items() if present})
 
@@ -219,7 +229,7 @@ def _quad_indices(count: int) -> np.ndarray:
 
 
 def _textures(device: gl.Device, polygon: Any, variant: _Variant) -> list[moderngl.Texture]:
-    """Height (always 32-bit float), colour, normal and facade map, by texture unit.
+    """Height (always 32-bit float), colour, normal and facade map, and of cones theirs, by texture unit.
 
     For the timed variant colours that are multiples of 1/255 are kept as 8-bit textures, as an application would.
     """
@@ -234,6 +244,9 @@ def _textures(device: gl.Device, polygon: Any, variant: _Variant) -> list[modern
         image = unused if image is None else np.asarray(image, float)
         eight_bit = not variant.stages and bool(np.all(np.abs(255.0 * image - np.rint(255.0 * image)) < 1e-6))
         textures.append(gl.upload(device, image, dtype="f1" if eight_bit else "f4", wrap=wrap))
+    cones = getattr(polygon, "cone_map", None)
+    if cones is not None:
+        textures.append(gl.upload(device, cones, wrap=repeat))
     return textures
 
 
@@ -266,7 +279,7 @@ def _stage_arrays(target: gl.Target) -> dict[str, np.ndarray]:
 
 def _check(scene: Any, params: Any, packed: bool) -> None:
     """Refuse what is not ported."""
-    if params.method != "protruded":
-        raise ValueError(f"method = {params.method!r}: the port allows protruded")
+    if params.method not in ("protruded", *BELOW):
+        raise ValueError(f"method = {params.method!r}: the port allows protruded, {', '.join(BELOW)}")
     if packed and any(polygon.domain == "repeat" for polygon in scene.polygons):
         raise ValueError("domain = 'repeat': the port allows clip with packed heights")

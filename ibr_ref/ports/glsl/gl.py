@@ -16,6 +16,10 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 import numpy as np
 
+from ibr_ref.ports.frame import Frame
+
+__all__ = ["Device", "Frame", "Target", "create_device", "create_target", "frame_seconds", "source", "upload"]
+
 GL_COLOR = 0x1800
 GL_DEPTH = 0x1801
 GL_DEPTH_ATTACHMENT = 0x8D00
@@ -53,15 +57,6 @@ class Entry:
     if TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any: ...
-
-
-@dataclass
-class Frame:
-    """What a port hands in: `color` (H, W, 3), `depth` (H, W), and the stages by the specification's names."""
-
-    color: np.ndarray
-    depth: np.ndarray
-    stages: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 @dataclass

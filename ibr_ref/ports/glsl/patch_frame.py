@@ -53,15 +53,15 @@ class PatchFrame:
         eye = into_patch(np.asarray(scene.camera.eye, float))
         return cls(polygon, scene, normal, rows, eye, into_patch(light_world), light_world)
 
-    def faces(self, params: Any) -> np.ndarray:
+    def faces(self, drawn: str, interval: str) -> np.ndarray:
         """(F, 4) patch positions and numbers of the corners of the faces that turn away from the eye."""
         u, v, h, w = self.eye
-        turned = [h > 0, u > 0, u < w, v > 0, v < w, params.interval == "volume" and h < w]
+        turned = [h > 0, u > 0, u < w, v > 0, v < w, interval == "volume" and h < w]
         numbers = [number for number, away in enumerate(turned) if away]
-        if params.faces != "auxiliary":
-            numbers = [0] if params.faces == "extended" or turned[0] else []
+        if drawn != "auxiliary":
+            numbers = [0] if drawn == "extended" or turned[0] else []
         faces = np.zeros((len(numbers), 4), dtype=[("patch", np.float32, 3), ("face", np.int32)])
-        faces["patch"] = self._extended() if params.faces == "extended" else FACES[numbers]
+        faces["patch"] = self._extended() if drawn == "extended" else FACES[numbers]
         faces["face"] = np.asarray(numbers, np.int32)[:, None]
         return faces
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from ibr_ref import models
 from ibr_ref.displacement import Params, Scene, render
+from ibr_ref.displacement.measures import heights_at
 from ibr_ref.io import Frame
-from ibr_ref.reproduce.displacement.measure import heights_at
 from ibr_ref.reproduce.displacement.scenes import SKY, looking_at
 from ibr_ref.reproduce.displacement.sheets import write_sheet
 from ibr_ref.reproduce.findings import Cell, Claim, Found, Table, Within

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ibr_ref import models
 from ibr_ref.displacement import Params, render
-from ibr_ref.reproduce.displacement.measure import EXACT, overflow, right_texels
+from ibr_ref.displacement.measures import EXACT, overflow, right_texels
 from ibr_ref.reproduce.displacement.scenes import SKY, looking_at
 from ibr_ref.reproduce.displacement.sheets import base, flat_walls, write_sheet
 from ibr_ref.reproduce.findings import Claim, Found, Table, Within

@@ -9,8 +9,7 @@ import numpy as np
 
 from ibr_ref import models
 from ibr_ref.displacement import Params, Scene, render
-from ibr_ref.io import Frame
-from ibr_ref.reproduce.displacement.measure import (
+from ibr_ref.displacement.measures import (
     EXACT,
     Mask,
     drift,
@@ -21,6 +20,7 @@ from ibr_ref.reproduce.displacement.measure import (
     wall_texture,
     walls,
 )
+from ibr_ref.io import Frame
 from ibr_ref.reproduce.displacement.scenes import looking_at
 from ibr_ref.reproduce.displacement.sheets import base, flat_walls, taller, without_faces, write_sheet
 from ibr_ref.reproduce.findings import Claim, Found, Table, Within

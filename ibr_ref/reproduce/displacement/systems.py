@@ -18,11 +18,6 @@ class System:
     marks: tuple[str, str, str] | None = None
     """Table 2: protrusion, steep displacement, silhouette; o available or good, ^ in between, x not."""
 
-    @property
-    def rises(self) -> bool:
-        """Whether its shapes rise from the polygon; those of the others sink below it."""
-        return self.params.method in ("protruded", "texture", "welsh")
-
 
 SYSTEMS = (
     System("texture mapping", Params(method="texture"), ""),

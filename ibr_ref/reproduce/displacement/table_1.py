@@ -6,14 +6,14 @@ from pathlib import Path
 
 from ibr_ref.demo.contact_sheet import contact_sheet
 from ibr_ref.displacement import render
-from ibr_ref.io import write_image
-from ibr_ref.reproduce.displacement.measure import (
+from ibr_ref.displacement.measures import (
     Truths,
     distances,
     fetches,
     raised,
     right_texels,
 )
+from ibr_ref.io import write_image
 from ibr_ref.reproduce.displacement.scenes import trials
 from ibr_ref.reproduce.displacement.systems import SETTINGS, SYSTEMS
 from ibr_ref.reproduce.findings import Cell, Claim, Figure, Found, Table, Within
@@ -37,11 +37,11 @@ def run(folder: Path, within: Within, size: tuple[int, int] = (480, 360)) -> Fou
         pictures = [("exact", truths.risen.color)]
         for j, system in enumerate(SYSTEMS):
             within(f"{name}: {system.name}", i * len(SYSTEMS) + j, len(scenes) * len(SYSTEMS))
-            frame, truth = render(scene, system.params), truths.of_system(system)
+            frame, truth = render(scene, system.params), truths.of_method(system.params)
             hits[name, system.name] = right_texels(scene, truth, frame, raised(scene, truth))
             flat = system.params.method in ("texture", "welsh")
             median, most = (None, None) if flat else distances(scene, truth, frame)
-            cells = (hits[name, system.name], median, most, fetches(system, frame))
+            cells = (hits[name, system.name], median, most, fetches(system.params, frame))
             rows.append((system.name, system.tracer, *cells))
             pictures.append((system.name.split(",")[0] if system.marks is None else system.name, frame.color))
         columns = ("system", "ray tracer, in the paper's words", "hits", "distance, median", "95 %", "fetches")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ibr_ref.displacement import render
-from ibr_ref.reproduce.displacement.measure import (
+from ibr_ref.displacement.measures import (
     Truths,
     drift,
     overflow,
@@ -45,7 +45,7 @@ def run(folder: Path, within: Within, size: tuple[int, int] = (480, 360)) -> Fou
         rows: list[tuple[Cell, ...]] = []
         for j, system in enumerate(SYSTEMS):
             within(f"{name}: {system.name}", i * len(SYSTEMS) + j, len(scenes) * len(SYSTEMS))
-            frame, own = render(scene, system.params), truths.of_system(system)
+            frame, own = render(scene, system.params), truths.of_method(system.params)
             wall = walls(scene, own)
             marks = system.marks or ("", "", "")
             mean, most = drift(scene, frame)

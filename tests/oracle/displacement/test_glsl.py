@@ -12,6 +12,7 @@ from tests.oracle.displacement.drawn import REFEREE, SMALL, case, wrong
 
 moderngl = pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
 
+from ibr_ref.ports.described import described  # noqa: E402
 from ibr_ref.ports.glsl.displacement import Port  # noqa: E402
 
 COVERED = (
@@ -29,6 +30,8 @@ COVERED = (
     "borders",
 )
 """The cases of the paper's interval on bounded maps, which is what that port draws."""
+BELOW = ("relief", "parallax", "steep", "occlusion", "cone", "relaxed")
+"""Those of the searches below the polygon."""
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +51,16 @@ def test_the_port_passes(port: Port, name: str) -> None:
     assert not wrong(REFEREE.judge_stages(what, PROFILES["gl"], arrays))
     if name.removeprefix("displacement-") in COVERED[::3]:
         assert not wrong([REFEREE.judge_image(what, PROFILES["gl"], {"color": frame.color, "depth": frame.depth})])
+
+
+@pytest.mark.parametrize("name", [f"displacement-{name}" for name in BELOW])
+def test_the_port_passes_below_the_polygon(port: Port, name: str) -> None:
+    what = case(name)
+    given = described("displacement", what.scene, what.params)
+    frame = port.render(given.scene, given.params)
+    arrays = {**frame.stages, "color": frame.color, "depth": frame.depth}
+    assert (arrays["march.hit_index"] >= 0).any()
+    assert not wrong(REFEREE.judge_stages(what, PROFILES["gl"], arrays))
 
 
 def test_the_port_with_one_step_more_fails(port: Port) -> None:

@@ -34,7 +34,7 @@ class Fate:
 def fate(mutant: Mutant, *, by_picture: bool) -> Fate:
     """Case by case, until it is dead both ways; a picture that is known to hide it is not asked for."""
     stages = stage = picture = ""
-    for name in SMALL:
+    for name in (name for name in SMALL if mutant.applies(case(name).system)):
         device, arrays = PROFILES[case(name).profile], draw(name, Policy(), mutant.port)
         shown = {"color": color_bytes(arrays["color"])}
         if not stages:

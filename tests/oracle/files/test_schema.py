@@ -42,7 +42,7 @@ def test_the_schema_refuses_unknown_fields_everywhere() -> None:
 
 
 COMPARED = {
-    "displacement": {"lod_bias", "min_steps", "max_steps", "distance_layers"},
+    "displacement": {"distance_layers"},
     "splatting": {"footprint", "low_pass", "cutoff", "depth_tolerance", "method"},
     "shadows": {"grid_size", "grid_mix", "grid_storage", "grid_threshold"},
 }

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from ibr_ref import models
 from ibr_ref.displacement import Params, Scene
+from ibr_ref.oracle.cases.displacement import CASES
+from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.scene import BasePolygon, Camera, Light
 
 WIDTH, HEIGHT = 96, 72
@@ -224,6 +226,20 @@ SCENES: dict[str, Callable[[], tuple[Scene, Params]]] = {
     )
 }
 
+
+def _of(name: str) -> Callable[[], tuple[Scene, Params]]:
+    return cache(lambda: (CASES[name]().scene, CASES[name]().params))
+
+
+SCENES |= {
+    "relief": _of("displacement-relief"),
+    "welsh": _of("displacement-parallax"),
+    "mcguire": _of("displacement-steep"),
+    "tatarchuk": _of("displacement-occlusion"),
+    "cone": _of("displacement-cone"),
+    "relaxed_cone": _of("displacement-relaxed"),
+}
+
 USUAL = "slope"
 """Where most bugs show: steep walls with a facade, self-shadow, a lamp, a highlight, sheared edges of unequal lengths."""
 
@@ -301,6 +317,11 @@ SHOWN_IN: dict[str, tuple[str, ...]] = {
     "coarse": ("delta on the size of the difference",),
     "dusk": ("no horizon",),
     "coincident": ("LEQUAL",),
+    # Below the polygon.
+    **{
+        search: tuple(m.name for m in MUTANTS if m.only[:1] == (search,))
+        for search in ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone")
+    },
 }
 """Scenes of the mutants that `USUAL` does not show, or does not show as small as they are meant to be."""
 

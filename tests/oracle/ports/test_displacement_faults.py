@@ -12,6 +12,7 @@ from ibr_ref import displacement
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.faults.displacement import MUTANTS, VARIANTS, Port
 from ibr_ref.oracle.faults.kinds import Mutant, Variant
+from ibr_ref.oracle.programs.displacement.searches import PROGRAMS
 from tests.agreement import Arrays, arrays_of
 from tests.oracle.ports.displacement_scenes import SCENES, SHOWN_IN, USUAL, scene_of
 
@@ -68,7 +69,10 @@ def test_there_are_enough_of_them() -> None:
     assert len(MUTANTS) >= 44
     assert len({v.name for v in VARIANTS}) == len(VARIANTS)
     assert len({m.name for m in MUTANTS}) == len(MUTANTS)
-    assert 3 * sum(m.small for m in MUTANTS) >= len(MUTANTS)
+    everywhere = [m for m in MUTANTS if not m.only]
+    assert 3 * sum(m.small for m in everywhere) >= len(everywhere)
+    for search in PROGRAMS:
+        assert sum(search in m.only for m in MUTANTS) >= 8 or search == "protruded"
     assert {m.stage for m in MUTANTS} == set(STAGES)
     assert all(m.fault.endswith(".") for m in MUTANTS)
 

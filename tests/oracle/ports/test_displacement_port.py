@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume
 
-from ibr_ref import displacement
+from ibr_ref import displacement, methods
+from ibr_ref.contract import is_margin
 from ibr_ref.displacement import Params, Scene
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.programs.displacement import Port
+from ibr_ref.oracle.programs.displacement.searches import PROGRAMS
 from ibr_ref.testing.displacement import REGIONS
 from ibr_ref.testing.displacement import Drawn as Case
 from ibr_ref.testing.displacement import drawn as cases
@@ -24,7 +28,7 @@ TOLERANCE = 1e-9
 def check_agreement(scene: Scene, params: Params, tolerance: float) -> None:
     """All arrays but the margins, by name, shape, type and value."""
     frame = arrays_of(displacement.render(scene, params))
-    expected = {name: array for name, array in frame.items() if "margin" not in name}
+    expected = {name: array for name, array in frame.items() if not is_margin(name)}
     found = Port(scene, params, DOUBLE, {}).render()
     assert set(found) == set(expected)
     for name, array in expected.items():
@@ -46,7 +50,7 @@ def agree(case: Case) -> None:
     The drawn eyes are often on a border or graze it, where quotients magnify the rounding of another order.
     """
     camera = case.scene.camera
-    assume(case.params.method == "protruded" and camera.near > 1e-4 * camera.far)
+    assume(case.params.method in PROGRAMS and camera.near > 1e-4 * camera.far)
     check_agreement(case.scene, case.params, 100.0 * TOLERANCE)
 
 
@@ -55,7 +59,40 @@ def test_port_agrees_on_drawn_scenes(number: int, one_thread: None) -> None:
     drawn.run_scene(number, cases(REGIONS[number % len(REGIONS)]), agree)
 
 
-def test_compared_systems_are_refused() -> None:
+SEARCHED = ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone")
+
+
+@pytest.mark.parametrize("method", SEARCHED)
+@pytest.mark.parametrize("name", ["slope", "tiles", "lamp"])
+def test_each_search_agrees_with_the_reference(method: str, name: str, one_thread: None) -> None:
+    """Sheared, tilted, repeated, with self-shadow; the eye far away and near."""
+    scene, params = SCENES[name]()
+    check_agreement(scene, replace(params, method=method, faces="base", interval="paper", lod_bias=0.0), TOLERANCE)
+
+
+@pytest.mark.parametrize("number", range(2 * len(SEARCHED)))
+def test_each_search_agrees_on_drawn_scenes(number: int, one_thread: None) -> None:
+    method = SEARCHED[number // 2]
+
+    def searched(case: Case) -> None:
+        params = replace(case.params, method=method, interval="paper", lod_bias=0.0)
+        agree(replace(case, params=params))
+
+    drawn.run_scene(number, cases(REGIONS[number % len(REGIONS)]), searched)
+
+
+@pytest.mark.parametrize("method", ["exact", "texture", "donnelly", "maximum_mipmap"])
+def test_other_systems_are_refused(method: str) -> None:
     scene, _ = SCENES["box"]()
-    with pytest.raises(ValueError, match=r"method: found 'relief', allowed: protruded"):
-        Port(scene, Params(method="relief"), DOUBLE, {})
+    with pytest.raises(ValueError, match=f"method: found '{method}', allowed: protruded | relief"):
+        Port(scene, Params(method=method), DOUBLE, {})
+
+
+def test_other_mip_levels_are_refused() -> None:
+    scene, _ = SCENES["box"]()
+    with pytest.raises(ValueError, match=r"lod_bias: found 1\.0, allowed: 0 in a case of mcguire"):
+        Port(scene, Params(method="mcguire"), DOUBLE, {})
+
+
+def test_the_judged_systems_have_programs() -> None:
+    assert methods.named("displacement").judged == ("method", tuple(PROGRAMS))

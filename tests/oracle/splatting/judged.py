@@ -10,8 +10,8 @@ from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.splatting import CASES
 from ibr_ref.oracle.declaration import device_of
+from ibr_ref.oracle.faults.splatting import Port
 from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.ports.splatting import Port
 from ibr_ref.oracle.referees.splatting import SplattingReferee
 
 Arrays = dict[str, Any]

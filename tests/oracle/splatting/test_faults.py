@@ -9,8 +9,9 @@ import pytest
 
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import PROFILES
-from ibr_ref.oracle.ports.splatting import MUTANTS, Port
-from ibr_ref.oracle.referees.splatting.normals import Codes, surface
+from ibr_ref.oracle.faults.splatting import MUTANTS, Port
+from ibr_ref.oracle.referees.splatting.model import Model
+from ibr_ref.oracle.referees.splatting.texels import codes_of
 from tests.oracle.judgements import complaints, first_wrong, picture
 from tests.oracle.splatting.judged import REFEREE, Arrays, case, drawn, image, reference, stages
 
@@ -163,11 +164,14 @@ def test_neighbours_of_one_depth_tie_on_every_device(profile: str) -> None:
 def test_a_port_may_light_with_normals_of_its_own() -> None:
     """Of a code on the edge between two it has the other one: legal, and its points and its picture are right with it."""
     described = case(LAMP)
-    legal = [Codes(surface(image, PROFILES["ieee32"])) for image in described.scene.images]
+    model = Model(described, PROFILES["ieee32"])
     own = [codes.copy() for codes in described.inputs["normals"]]
-    for codes, allowed in zip(own, legal, strict=True):
-        for pixels, low, high in allowed.outcomes:
-            codes[tuple(pixels.T)] = np.where(low < high, low + high - codes[tuple(pixels.T)], codes[tuple(pixels.T)])
+    for number, codes in enumerate(own):
+        pixels, legal, _ = codes_of(model, number)
+        flat = codes.reshape(-1, 3)
+        for k, x in enumerate(legal):
+            low, high = np.ceil(x.low), np.floor(x.high)
+            flat[pixels, k] = np.where(low < high, low + high - flat[pixels, k], flat[pixels, k])
     page, rects = copied(drawn(LAMP))["atlas.normal"], drawn(LAMP)["atlas.rects"]
     for (number, x, y, width, height), codes in zip(rects.tolist(), own, strict=True):
         page[number][y : y + height, x : x + width] = codes

@@ -9,8 +9,8 @@ import pytest
 
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.faults.kinds import Mutant, Variant
-from ibr_ref.oracle.ports.splatting import MUTANTS, VARIANTS, Port
-from ibr_ref.oracle.ports.splatting.variants import OwnNormals
+from ibr_ref.oracle.faults.splatting import MUTANTS, VARIANTS, Port
+from ibr_ref.oracle.programs.splatting.variants import OwnNormals
 from tests.oracle.devices import random_policy
 from tests.oracle.judgements import complaints, first_wrong, picture, pictures
 from tests.oracle.splatting.judged import SMALL, case, drawn, image, reference, stages
@@ -55,7 +55,7 @@ def test_wrong_normals_explain_no_picture() -> None:
     mutants = [m for m in MUTANTS if m.stage == "normals"]
     shown = 0
     for mutant in mutants:
-        arrays = drawn(name, port=type("Own", (OwnNormals,), {"normals": mutant.port.normals}))  # type: ignore[attr-defined]
+        arrays = drawn(name, port=type("Own", (OwnNormals,), {"preparation": mutant.port.preparation}))  # type: ignore[attr-defined]
         own = {"atlas.normal": arrays["atlas.normal"]}
         if image(name, picture(arrays)).wrong.any() and stages(name, own)[0].wrong.any():
             shown += 1

@@ -11,6 +11,7 @@ from ibr_ref.oracle.faults.displacement.march import MARCH
 from ibr_ref.oracle.faults.displacement.raster import RASTER
 from ibr_ref.oracle.faults.displacement.resolve import RESOLVE, WRITTEN
 from ibr_ref.oracle.faults.displacement.search import SEARCH
+from ibr_ref.oracle.faults.displacement.searches import SEARCHES
 from ibr_ref.oracle.faults.displacement.shade import SHADE
 from ibr_ref.oracle.faults.displacement.vertex import VERTEX
 from ibr_ref.oracle.faults.kinds import Mutant
@@ -18,7 +19,9 @@ from ibr_ref.oracle.programs.displacement import Port
 from ibr_ref.oracle.programs.displacement.variants import VARIANTS
 
 MUTANTS: tuple[Mutant, ...] = tuple(
-    mutant for bugs in (VERTEX, RASTER, MARCH, SEARCH, SHADE, LIGHT, RESOLVE, WRITTEN) for mutant in bugs.mutants
+    mutant
+    for bugs in (VERTEX, RASTER, MARCH, SEARCH, *SEARCHES, SHADE, LIGHT, RESOLVE, WRITTEN)
+    for mutant in bugs.mutants
 )
 """In the order of the stages."""
 

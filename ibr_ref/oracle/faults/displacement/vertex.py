@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ibr_ref.oracle.faults.displacement.bugs import Bugs
+from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.programs.displacement.case import Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.oracle.programs.displacement.vertex import V1, Quad

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ibr_ref.array_types import Floats
+from ibr_ref.oracle.accept.borders import SIDES
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.ports.shadows.port import Port
@@ -57,6 +58,21 @@ class SharesFirst(Port):
     """Varyings are sums by normalized weights."""
 
     surface_raster = _SharesFirst
+
+
+class _CutAtBorders(Raster):
+    """Clips at the picture's borders too."""
+
+    def distances(self, corner: Floats) -> list[Floats]:
+        """Near, far, left, right, lower, upper."""
+        sides = [self.ops.add(corner[..., 3], sign * corner[..., axis]) for axis, sign in SIDES]
+        return [*super().distances(corner), *sides]
+
+
+class CutAtBorders(Port):
+    """Triangles are cut at the borders of maps and picture: what is left may be slivers."""
+
+    map_raster = direct_raster = surface_raster = _CutAtBorders
 
 
 class CombinedMatrices(Port):
@@ -199,6 +215,7 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("jitter 2", Policy(jitter=2, seed=2), "gl"),
     Variant("jitter 3", Policy(jitter=2, seed=3, backwards=True), "gl"),
     Variant("unsnapped varyings", Policy(snapped_varyings=False), "gl"),
+    Variant("cut at the borders", Policy(snapped_varyings=False), "gl", CutAtBorders),
     Variant("8-bit colour", Policy(color_bits=8), "gl"),
     Variant("all of gl", _GL, "gl"),
 )

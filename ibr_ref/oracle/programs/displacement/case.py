@@ -6,17 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
-from ibr_ref.scene.checks import reject
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.programs.program import Bools, Floats, Ints, Program, Vector
 
-Floats = Any
-"""Numbers of the arithmetic that the program runs on: arrays of a device's, or `Number`s with bounds."""
-Vector = Any
-"""Components of one vector, or of many: each numbers of any one shape."""
-Ints = Any
-Bools = Any
-"""Decided, or a `Truth`."""
-PROGRAMS = __name__.rpartition(".")[0]
+__all__ = ["Bools", "Case", "Floats", "Ints", "Patch", "Vector"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,49 +37,34 @@ class Patch:
     facade_tile: Vector
 
 
-class Case:
+class Case(Program):
     """The uniforms and textures of a scene, and operations on vectors."""
 
-    limits: ClassVar[dict[str, Any]] = {}
-    """Numbers of the device that a fault takes for others."""
+    floor: ClassVar[float] = 0.0
+    """h of the volume's bottom."""
 
     def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
-        """A displacement scene and its parameters; `inputs` is not used: the scene holds everything.
-
-        Raises ValueError for the systems that the paper compares with: they are no part of this port.
-        """
-        if params.method != "protruded":
-            raise reject("method", params.method, "protruded")
-        self.scene = scene
-        self.params = params
-        self.do: Any
+        """A displacement scene and its parameters; `inputs` is not used: the scene holds everything."""
         self.width: int = scene.camera.width
         self.height: int = scene.camera.height
-        self.on(Arithmetic(policy))
+        super().__init__(scene, params, policy, inputs)
 
     def on(self, do: Any) -> Self:
         """On another arithmetic: a device's, or bounds of what devices make of it."""
-        self.do = do
+        super().on(do)
         self.multiplied: dict[int, tuple[Patch, list[Vector], list[Vector]]] = {}
         camera = self.scene.camera
         self.view_from_world, self.clip_from_view = do.matrix(camera.view_from_world), do.matrix(camera.clip_from_view)
         self.eye, self.light = self.upload(camera.eye), self.upload(self.scene.light.homogeneous)
         return self
 
-    def right(self, *names: str) -> bool:
-        """Whether no fault changes these methods: only then does another legal form stand beside what they compute."""
-        return all(getattr(type(self), name).__module__.startswith(PROGRAMS) for name in names)
-
     def upload(self, vector: Floats) -> Vector:
         """A vector in a uniform buffer."""
         return list(self.do.number(vector))
 
-    def cross(self, a: Vector, b: Vector) -> Vector:
-        """The cross product."""
-        return [
-            self.do.dot([a[i], -a[j]], [b[j], b[i]])  # a_i b_j - a_j b_i
-            for i, j in ((1, 2), (2, 0), (0, 1))
-        ]
+    def above_floor(self, h: Floats) -> Floats:
+        """Heights above the volume's bottom."""
+        return self.do.subtract(h, self.floor) if self.floor else h
 
     def multiply_add(self, a: Floats, b: Floats, c: Floats) -> Floats:
         """A b + c."""

@@ -173,7 +173,7 @@ class March(Vertex, TextureUnit):
         """Samples that are not certainly above all texels around them, where that is sooner known; None: all."""
         if not (self.do.bounded and self.right("sample", "inside", "height_at", *FILTER)):
             return None
-        return self.do.below_highest(patch.heights, point[0], point[1], point[2], patch.repeat)
+        return self.do.below_highest(patch.heights, point[0], point[1], self.above_floor(point[2]), patch.repeat)
 
     def height_before(self, patch: Patch, rays: Rays, linear: Ints) -> Floats:
         """a: the height map one linear step before a stop, 0 where that is none of the search's."""

@@ -11,6 +11,8 @@ It has no guard band: no corner may come nearer to the eye than that its window 
 
 from __future__ import annotations
 
+from typing import Any, Self
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,7 +22,19 @@ from ibr_ref.oracle.programs.displacement.shade import Shade
 
 
 class Port(Shade, Resolve, Raster):
-    """The stages in order: vertex, raster, march, shade, resolve. A `PlainPort`."""
+    """The stages in order: vertex, raster, march, shade, resolve. A `PlainPort`.
+
+    Of another search than the protruded one it is that search's program: `Port(scene, params, ...)`, and any class with
+    something else overridden, is made one with what that search overrides.
+    """
+
+    def __new__(cls, scene: Any, params: Any, *_: Any) -> Self:
+        """Raises ValueError for a search that has no program."""
+        from ibr_ref.oracle.programs.displacement.searches import searching  # here: searches are ports
+
+        kind: Any = searching(cls, params.method)  # type: ignore[arg-type]  # a class, which can be hashed
+        found: Self = super().__new__(kind)
+        return found
 
     def render(self) -> dict[str, NDArray[np.generic]]:
         """All stage arrays of the contract but the margins, "color" (H, W, 3) and "depth" (H, W)."""

@@ -51,13 +51,20 @@ class Raster(Case):
 
     def triangles(self, quads: Sequence[Quad]) -> list[tuple[int, list[Floats]]]:
         """The quads' faces and corners, clip coordinates and varyings (7,), in the order of submission, after clipping."""
+        return self.fanned(self.polygons(quads))
+
+    def polygons(self, quads: Sequence[Quad]) -> list[tuple[int, list[Floats]]]:
+        """The quads' faces, and what clipping leaves of each triangle."""
         found = []
         for quad in quads:
             vertices = np.concatenate([quad.clip, quad.patch], axis=1)
             for corners in self.triangles_of(quad):
-                polygon = self.clipped([vertices[i] for i in corners])
-                found += [(quad.face, [polygon[0], *pair]) for pair in pairwise(polygon[1:])]
+                found.append((quad.face, self.clipped([vertices[i] for i in corners])))
         return found
+
+    def fanned(self, polygons: Sequence[tuple[int, list[Floats]]]) -> list[tuple[int, list[Floats]]]:
+        """Polygons as triangles, from their first corners."""
+        return [(face, [corners[0], *pair]) for face, corners in polygons for pair in pairwise(corners[1:])]
 
     def triangles_of(self, quad: Quad) -> Sequence[tuple[int, int, int]]:
         """Corners of the two triangles."""

@@ -88,8 +88,12 @@ class Resolve(Vertex):
 
     def window_depth(self, patch: Patch, hit: Vector, face_depth: Floats) -> Floats:
         """The fragments' depths as the depth buffer holds them."""
-        depth = face_depth if self.params.depth == "polygon" else self.hit_depth(patch, hit)
-        return self.do.depth(depth)
+        return self.do.depth(self.hit_depth(patch, hit) if self.displaces else face_depth)
+
+    @property
+    def displaces(self) -> bool:
+        """Whether depth is that of the hit, and not of the face."""
+        return bool(self.params.depth == "displaced")
 
     def hit_depth(self, patch: Patch, hit: Vector) -> Floats:
         """Window depth of hits."""

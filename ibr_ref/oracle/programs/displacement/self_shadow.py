@@ -36,7 +36,8 @@ class SelfShadow(March):
     def stretch(self, patch: Patch, hit: Vector, way: Vector) -> Floats:
         """How much of the way is searched: to the border of the cube (of a repeated map: to the top), or to the light."""
         axes = (2,) if patch.repeat else (0, 1, 2)
-        shares = [self.share_up(hit[k], way[k]) if patch.repeat else self.share_to_wall(hit[k], way[k]) for k in axes]
+        at = [hit[0], hit[1], self.above_floor(hit[2])]
+        shares = [self.share_up(at[k], way[k]) if patch.repeat else self.share_to_wall(at[k], way[k]) for k in axes]
         share = reduce(self.do.least, shares)
         return self.until_light(patch, share)
 
@@ -58,7 +59,7 @@ class SelfShadow(March):
 
     def in_shadow(self, patch: Patch, h: Floats, height: Floats) -> Bools:
         """Whether a sample is below the surface."""
-        return self.do.add(h, self.shadow_bias(patch)) < height
+        return self.do.add(self.above_floor(h), self.shadow_bias(patch)) < height
 
     def shadow_bias(self, patch: Patch) -> Floats:
         """In units of h."""

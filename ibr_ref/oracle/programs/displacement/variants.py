@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from ibr_ref.oracle.accept.borders import SIDES
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.programs.displacement.case import Floats, Ints, Patch, Vector
@@ -110,6 +112,34 @@ class _HostPatchSpace(Port):
         return Patch(**{**vars(exact), **fields, **textures})
 
 
+class CutAtBorders(Port):
+    """Polygons are cut at the picture's borders and fanned from another corner, their varyings planes over the window."""
+
+    def clipped(self, polygon: list[Floats]) -> list[Floats]:
+        """What near, far, left, right, lower and upper plane leave."""
+        polygon = super().clipped(polygon)
+        for axis, sign in SIDES:
+            polygon = self.cut(polygon, partial(self.side_distance, axis, sign))
+        return [*polygon[1:], *polygon[:1]]
+
+    def side_distance(self, axis: int, sign: float, clip: Floats) -> Floats:
+        """W + x, w - x, w + y, w - y."""
+        return self.do.add(clip[3], sign * clip[axis])
+
+    def weights(self, window: tuple[Floats, Floats], edges: Sequence[Ints], row: Ints, column: Ints) -> list[Floats]:
+        """Each as c + a x + b y, of the unsnapped corners."""
+        do, (x, y) = self.do, window
+        sides = [(do.subtract(x[b], x[a]), do.subtract(y[b], y[a]), x[a], y[a]) for a, b in ((1, 2), (2, 0), (0, 1))]
+        (ux, uy, _, _), (vx, vy, _, _) = sides[1:]
+        area = do.subtract(do.multiply(ux, vy), do.multiply(uy, vx))
+        weights = []
+        for dx, dy, at_x, at_y in sides:
+            along, down = do.divide(-dy, area), do.divide(dx, area)
+            start = -do.dot([along, down], [at_x, at_y])
+            weights.append(do.dot([start, along, down], [1.0, column + 0.5, row + 0.5]))
+        return weights
+
+
 VARIANTS: tuple[Variant, ...] = (
     Variant("float64", Policy(float_bits=64), "ieee32"),
     Variant("float32", Policy(), "ieee32"),
@@ -148,6 +178,7 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("1-ULP jitter, seed 2", Policy(jitter=1, seed=2, weight_bits=8), "gl"),
     Variant("24-bit depth", Policy(depth_bits=24), "d3d11"),
     Variant("unsnapped varyings", Policy(snapped_varyings=False), "gl"),
+    Variant("cut at the borders", Policy(snapped_varyings=False), "gl", CutAtBorders),
     Variant("8-bit colour", Policy(color_bits=8), "gl"),
     Variant("2-ULP jitter, seed 1", Policy(jitter=2, seed=1), "gl"),
     Variant("2-ULP jitter, seed 2", Policy(jitter=2, seed=2, backwards=True), "gl"),

@@ -141,7 +141,7 @@ class Vertex(Case):
 
     def draws(self, face: int, eye: Vector) -> bool:
         """Whether the parameters ask for the face and it is turned away from the eye."""
-        if face != BASE and self.params.faces != "auxiliary":
+        if face != BASE and self.params.drawn_faces != "auxiliary":
             return False
         if face == TOP and self.params.interval != "volume":
             return False
@@ -154,7 +154,7 @@ class Vertex(Case):
 
     def quad(self, patch: Patch, face: int) -> Quad:
         """One face in patch space and in clip space."""
-        corners = self.extended_corners(patch.eye) if self.params.faces == "extended" else QUADS[face]
+        corners = self.extended_corners(patch.eye) if self.params.drawn_faces == "extended" else QUADS[face]
         clip = self.projected(patch, list(corners.T), again=False)
         return Quad(face, corners, np.stack(np.broadcast_arrays(*clip), axis=-1))
 

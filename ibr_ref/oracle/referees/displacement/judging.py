@@ -17,6 +17,7 @@ from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.displacement.drawn_faces import judge_faces, other_faces
 from ibr_ref.oracle.referees.displacement.replay import Port, march_field, not_covered, raster_field, shade_field
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades
+from ibr_ref.oracle.referees.outcomes import judged
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,22 +54,6 @@ def judge_vertex(port: Port) -> Judgement:
         width=np.max(widths, axis=0),
         blame=blame,
     )
-
-
-def judged(element: Ints, agrees: list[Bools], count: int) -> tuple[Bools, Any]:
-    """Whether any outcome agrees with all arrays, and the first array that no outcome agrees with.
-
-    Where each array agrees with some outcome, but none with all, the first one that breaks the agreement is blamed.
-    """
-    blame = np.full(count, -1, np.int8)
-    together = np.ones(len(element), np.bool_)
-    right = np.ones(count, np.bool_)
-    for name, each in enumerate(agrees):
-        together = together & each
-        right = np.zeros(count, np.bool_)
-        right[element[together]] = True
-        blame[~right & (blame < 0)] = name
-    return right, blame
 
 
 def _judged(port: Port, names: Sequence[str], pixel: Ints, fields: Sequence[Any], bare: Ints) -> tuple[Bools, Any]:

@@ -79,9 +79,10 @@ class Model:
 
     def rasterized(self, quads: Sequence[Sequence[Any]]) -> Raster:
         """Of other vertices."""
-        triangles = [self.program.triangles(each) for each in quads]
+        polygons = [self.program.polygons(each) for each in quads]
+        triangles = [self.program.fanned(each) for each in polygons]
         parts = [
-            fragments_of(self.program, each, number, self.machine.device)
+            fragments_of(self.program, polygons[number], number, self.machine.device)
             for number, each in enumerate(triangles)
             if each
         ]
@@ -142,9 +143,10 @@ class Raster:
         clip = [[machine.lanes(c[:, k], lane) for c in at] for k in range(7)]
         w = [machine.named(f"w {i}", x) for i, x in enumerate(clip[3])]
         point = [program.varying(weights, clip[4 + k], w) for k in range(3)]
-        point = [machine.named(f"C {k}", x.absorbed(AXES)) for k, x in enumerate(point)]
         depth = program.face_depth(weights, [machine.divide(z, x) for z, x in zip(clip[2], w, strict=True)], w)
-        return point, depth.absorbed(AXES)
+        off = [Number(machine, np.zeros(len(some)), each, {}, lane) for each in some.pieces.T]
+        point = [machine.named(f"C {k}", x.plus(off[k]).absorbed(AXES)) for k, x in enumerate(point)]
+        return point, depth.plus(off[3]).absorbed(AXES)
 
     def _corners(self, polygon: int) -> list[Number]:
         """(T, 7) of each corner."""
@@ -157,7 +159,7 @@ def _concatenated(parts: Sequence[Fragments]) -> Fragments:
     names = Fragments.__dataclass_fields__
     if not parts:
         nothing = np.zeros(0, np.int64)
-        shapes = {"weights": (0, 3), "rounding": (0, 3), "gradient": (0, 3, 2), "moved": (0,)}
+        shapes = {"weights": (0, 3), "rounding": (0, 3), "pieces": (0, 4), "gradient": (0, 3, 2), "moved": (0,)}
         empty: dict[str, Any] = {n: np.zeros(shapes[n]) if n in shapes else nothing for n in names}
         return Fragments(**{**empty, "certain": nothing > 0})
     return Fragments(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names})

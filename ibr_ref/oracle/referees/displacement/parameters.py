@@ -11,6 +11,7 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.judgement import Parameter
 from ibr_ref.oracle.referees.moved import components, with_light, with_params, with_scene
 from ibr_ref.scene import Camera
+from ibr_ref.searches import SEARCHES
 
 STEP = 2.0**-10
 """Of a parameter, relative to its size: the cube root of float64's precision is 2^-17, and a hit moves in lattice steps, so
@@ -27,10 +28,12 @@ def parameters(case: Case) -> list[Parameter]:
     places = components(getattr(light, where), lambda vector: with_light(case, **{where: vector}))
     found += [_parameter(f"light.{where}.{axis}", value, moved) for axis, value, moved in places]
     found.append(_parameter("height_scale", 1.0, _scaled(case)))
-    found.append(_parameter("steep_threshold", case.params.steep_threshold, _param(case, "steep_threshold")))
+    reads = SEARCHES[case.params.method].reads
+    if "steep_threshold" in reads:
+        found.append(_parameter("steep_threshold", case.params.steep_threshold, _param(case, "steep_threshold")))
     if case.params.shadow_steps:
         found.append(_parameter("shadow_bias", case.params.shadow_bias, _param(case, "shadow_bias")))
-    if any(polygon.facade_map is not None for polygon in polygons):
+    if "facade_map" in reads and any(polygon.facade_map is not None for polygon in polygons):
         found.append(_parameter("facade_tile", 1.0, _tiled(case)))
     found += [_parameter(f"eye.{axis}", 0.0, _moved_eye(case, k), size=_extent(case)) for k, axis in enumerate("xyz")]
     return found

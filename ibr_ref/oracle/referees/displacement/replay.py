@@ -15,13 +15,13 @@ import numpy as np
 
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.programs.displacement.vertex import Quad
 from ibr_ref.oracle.referees.displacement.hits import points_from, points_of, redepthed
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.picture import Picture, picture_of
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades, Vector
+from ibr_ref.oracle.referees.outcomes import stored
 
 ARRAYS = {
     "vertex": ("vertex.patch", "vertex.clip"),
@@ -96,16 +96,8 @@ class Port:
         return [self.stored(x) for x in self.floats(name)[at].T]
 
     def stored(self, values: Floats, own: Number | None = None) -> Number:
-        """What was handed in, as the port computed with it: rounded to a float32 at most once where it was stored.
-
-        A port that computes with more digits, or whose compiler keeps more in a register, hands in float32 all the same.
-        own: what the number may be by the port's own inputs; where that is one number, and the port's, nothing was rounded.
-        """
-        rounded = np.isfinite(values)
-        if own is not None:
-            rounded &= (own.deviation != 0.0) | (own.value != values)
-        error = np.where(rounded, self.model.machine.device.operation * UNIT * np.abs(values), 0.0)
-        return Number(self.model.machine, values, error)
+        """What was handed in, as the port computed with it."""
+        return stored(self.model.machine, values, own)
 
     def polygon(self, at: Any = slice(None)) -> Ints:
         """Of each pixel, by the port's own account; -1 where it names none of the scene's."""
@@ -248,7 +240,7 @@ def _ports_hits(port: Port, candidates: Callable[[], Points]) -> Hits:
     zero = np.zeros(count, np.int64)
     none = Number(port.model.machine, np.zeros(count))
     face_depth = none
-    if not port.model.program.right("window_depth") or port.case.params.depth == "polygon":
+    if not port.model.program.right("window_depth") or not port.model.program.displaces:
         face_depth = _face_depth(candidates(), pixel, polygon[pixel], None)
     return _at(
         port,

@@ -29,6 +29,8 @@ from ibr_ref.oracle.referees.displacement.replay import (
 )
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades
 
+START = 500
+"""What setting up a program costs, in rows."""
 STAGES = ("vertex", "raster", "march", "shade", "resolve")
 
 
@@ -37,6 +39,11 @@ class Stages:
 
     def __init__(self, port: Port) -> None:
         self.port, self.model = port, port.model
+
+    @property
+    def cost(self) -> int:
+        """Rows of the program that were run, forks too."""
+        return START + self.model.machine.rows_run
 
     def take_fragments(self, other: Stages) -> None:
         """Those of a program that draws the same faces."""
@@ -57,7 +64,7 @@ class Stages:
             return tuple(name for name in ("depth", "color") if name in self.port.handed)
         return self.port.names(stage)
 
-    def judge(self, stage: str, *, clean: bool) -> Judgement:
+    def judge(self, stage: str, *, clean: bool = True) -> Judgement:
         """One stage. clean: the geometry before it is right, so that the program's other fragments are the port's."""
         port = self.port
         if stage == "vertex":

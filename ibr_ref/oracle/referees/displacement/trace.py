@@ -13,6 +13,7 @@ from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, TraceRow
+from ibr_ref.oracle.programs.displacement.searches.below import Descent
 from ibr_ref.oracle.referees.displacement.drawn_faces import FACES, faces_rows, other_faces
 from ibr_ref.oracle.referees.displacement.element import Element
 from ibr_ref.oracle.referees.displacement.hits import hits_of, lighted, shades_of
@@ -135,13 +136,27 @@ class _Search:
         point = [self.machine.of(x) for x in self.program.position(self.rays, np.array([index]))]
         height, empty = self.program.sample(self.patch, point)
         outside = bool(np.all(empty.must if hasattr(empty, "must") else empty))
-        return point, self.machine.of(height).plus(point[2], -1.0), outside
+        return point, self.machine.of(height).plus(self.program.above_floor(point[2]), -1.0), outside
+
+    @property
+    def asks(self) -> str:
+        """What is asked of a sample."""
+        return "1 - d <= H" if self.sunken else "h < H"
+
+    @property
+    def sunken(self) -> bool:
+        """Below the polygon a sample on the surface is inside."""
+        return bool(self.program.floor < 0.0)
+
+    def inside(self, gap: Number) -> bool:
+        """By the values themselves."""
+        return bool(gap.value[0] >= 0.0 if self.sunken else gap.value[0] > 0.0)
 
     def stop(self) -> int | None:
         """The step at which the values themselves stop."""
         for i in range(self.first, self.params.linear_steps + 1):
             _, gap, outside = self.sample(i << self.params.binary_steps)
-            if not outside and gap.value[0] > 0.0:
+            if not outside and self.inside(gap):
                 return i
         return None
 
@@ -153,10 +168,11 @@ class _Search:
         if outside:
             reference = f"{place}: outside the map, empty: no"
             return TraceRow(step=step, reference=reference, port=answer, note="differs" if said else "certain")
-        true, margin, bound = bool(gap.value[0] > 0.0), abs(float(gap.value[0])), float(gap.deviation[0])
+        true, margin, bound = self.inside(gap), abs(float(gap.value[0])), float(gap.deviation[0])
         differs = said is not None and said != true
         note = "either way is legal" if margin <= bound else "differs" if differs else "certain"
-        heights = f"{_number(h.value[0])} < {_number(h.value[0] + gap.value[0])}"
+        level, sign = self.machine.of(self.program.above_floor(h)).value[0], "<=" if self.sunken else "<"
+        heights = f"{_number(level)} {sign} {_number(level + gap.value[0])}"
         reference = f"{place}: {heights}: {'yes' if true else 'no'}"
         return TraceRow(step=step, reference=reference, port=answer, margin=margin, bound=bound, note=note)
 
@@ -180,6 +196,10 @@ def _march(port: Port, pixel: int, point: Points) -> Iterator[TraceRow]:
     start, way = ([search.machine.of(x) for x in part] for part in (search.rays.start, search.rays.way))
     yield _row("ray at t = 0", start, None)
     yield _row("ray at t = 1", [a.plus(b) for a, b in zip(start, way, strict=True)], None)
+    if isinstance(search.program, Descent):
+        told = search.program.told(search.patch, search.rays)
+        yield from (_row(step, search.machine.of(result), None) for step, result in told)
+        return
     linear = int(port.ints("march.linear_index")[pixel]) if port.has("march.linear_index") else None
     if linear is not None and linear > params.linear_steps:  # no sample of the search: which way it took is not known
         linear = None
@@ -188,14 +208,14 @@ def _march(port: Port, pixel: int, point: Points) -> Iterator[TraceRow]:
     last = params.linear_steps if stop is None or (linear is not None and linear < 0) else max(stop, linear or 0)
     for i in range(search.first, last + 1):
         said = None if linear is None or (linear >= 0 and i > linear) else i == linear
-        yield search.comparison(f"linear search, sample {i}: h < H", i << params.binary_steps, said)
+        yield search.comparison(f"linear search, sample {i}: {search.asks}", i << params.binary_steps, said)
     followed = linear if linear is not None and linear > 0 else stop
     if followed:
         low, high = (followed - 1) << params.binary_steps, followed << params.binary_steps
         while high - low > 1:
             middle = (low + high) // 2
             said = None if hit is None or hit < 0 else middle >= hit
-            row = search.comparison(f"binary search, k = {middle}: h < H", middle, said)
+            row = search.comparison(f"binary search, k = {middle}: {search.asks}", middle, said)
             yield row
             inside = said if said is not None else row.reference.endswith("yes")
             low, high = (low, middle) if inside else (middle, high)
@@ -204,6 +224,7 @@ def _march(port: Port, pixel: int, point: Points) -> Iterator[TraceRow]:
 
 def _outcomes(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
     """What the marches may come to; a hit before the near plane is discarded."""
+    walls = port.model.program.floor == 0.0
     for i in range(len(hits)):
         margin = hits.hit[2][i].plus(hits.height_before[i], -1.0).plus(port.case.params.steep_threshold, -1.0)
         kept = bool(hits.kept[i])
@@ -212,8 +233,8 @@ def _outcomes(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
             reference=f"{hits.linear_index[i]}, {hits.hit_index[i]}, {_vector([x.value[i] for x in hits.hit])}, "
             f"{_number(hits.height_before.value[i])}, {bool(hits.steep[i])}",
             port=_handed(port, pixel, ARRAYS["march"]),
-            margin=abs(float(margin.value)) if kept else None,
-            bound=float(margin.deviation) if kept else None,
+            margin=abs(float(margin.value)) if kept and walls else None,
+            bound=float(margin.deviation) if kept and walls else None,
             note="" if kept else "discarded",
         )
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.array_types import Floats, Ints
+from ibr_ref.oracle.accept import borders
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import RASTER
 from ibr_ref.oracle.device import UNIT, Device
@@ -52,6 +53,8 @@ class Cut:
     """One number for corners that are one point."""
     source: Ints
     """(T,) growing: the triangle before clipping."""
+    borders: list[borders.Cut | None]
+    """Of each triangle: what the picture's borders leave of its polygon, where the device may cut it there."""
     wild: bool
     """Of some triangle it is not certain whether or where a plane cuts it: it may cover anything."""
 
@@ -90,7 +93,27 @@ def clipped(numbers: Sequence[Bounded], triangles: NDArray[np.integer], names: I
     x, y, z = window(parts[:4], width, height)
     # A corner that slides is snapped from elsewhere on its edge: it leaves the edge by up to half a step either way.
     off = np.where(joined[2].any(axis=2), 1.0 / RASTER, 0.0)
-    return Cut(x.widened(off), y.widened(off), z, parts[3], parts[4:], named, source[order], wild)
+    cuts = _borders(joined[0], joined[1], source[order], (width, height), device)
+    off += np.array([[0.0 if each is None else each.moved] for each in cuts]).reshape(-1, 1)
+    return Cut(x.widened(off), y.widened(off), z, parts[3], parts[4:], named, source[order], cuts, wild)
+
+
+def _borders(
+    value: Floats, error: Floats, source: Ints, size: tuple[int, int], device: Device
+) -> list[borders.Cut | None]:
+    """Of each triangle (T, 3) the cut of the polygon that it is of: the fan of its source."""
+    result: list[borders.Cut | None] = [None] * len(source)
+    if not device.clip_border:
+        return result
+    with np.errstate(invalid="ignore"):
+        outside = np.flatnonzero((np.abs(value[..., :2]) > value[..., 3:4]).any(axis=(1, 2)))
+    for each in np.unique(source[outside]):
+        fan = range(*np.searchsorted(source, [each, each + 1]))
+        clip, off = (np.concatenate([a[fan[0], :, :4], *(a[t, 2:, :4] for t in fan[1:])]) for a in (value, error))
+        found = borders.cut(clip, off, size, device)
+        for t in fan:
+            result[t] = found
+    return result
 
 
 class _Names:

@@ -13,11 +13,13 @@ of picture and triangle.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ibr_ref.array_types import Floats
+from ibr_ref.oracle.accept.borders import Cut, Piece
+from ibr_ref.oracle.accept.borders import pieces as pieces_of
 from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.accept.coverage import Fragments, snapped
 from ibr_ref.oracle.device import UNIT, Device
@@ -38,10 +40,13 @@ class Triangles:
     extent: tuple[Floats, Floats]
     """(T,) each: the largest coordinate at which a plane is evaluated or anchored."""
     unsnapped: bool
+    cuts: Sequence[Cut | None]
+    """(T,) what the picture's borders leave of their polygons, where they may be cut there."""
+    device: Device
 
     @classmethod
-    def of(cls, x: Bounded, y: Bounded, width: int, height: int) -> Triangles:
-        """x, y (T, 3) in pixels, before they are snapped."""
+    def of(cls, x: Bounded, y: Bounded, width: int, height: int, cuts: Sequence[Cut | None] = ()) -> Triangles:
+        """x, y (T, 3) in pixels, before they are snapped; cuts: none, or one a triangle."""
         (at_x, off_x), (at_y, off_y) = snapped(x), snapped(y)
         unsnapped = x.device.unsnapped
         if unsnapped:
@@ -50,7 +55,19 @@ class Triangles:
         edge_x, edge_y = ((a[:, 1] - a[:, 0], a[:, 2] - a[:, 0]) for a in (at_x, at_y))
         area = edge_x[0] * edge_y[1] - edge_y[0] * edge_x[1]
         extent_x, extent_y = (np.maximum(np.abs(a).max(axis=1), n) for a, n in ((at_x, width), (at_y, height)))
-        return cls(at_x, at_y, (off_x, off_y), area, (extent_x, extent_y), unsnapped)
+        return cls(at_x, at_y, (off_x, off_y), area, (extent_x, extent_y), unsnapped, cuts, x.device)
+
+    def pieces(self, found: Fragments) -> list[tuple[int, Piece]]:
+        """Triangles, and the pieces that may cover fragments of theirs."""
+        result = []
+        for triangle, cut in enumerate(self.cuts):
+            if cut is None:
+                continue
+            mine = np.flatnonzero(found.triangle == triangle)
+            px, py = (np.asarray(a[mine] + 0.5, np.float64) for a in (found.columns, found.rows))
+            for piece in pieces_of(cut, (self.x[triangle], self.y[triangle]), px, py, self.device):
+                result.append((triangle, replace(piece, points=mine[piece.points])))
+        return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +77,18 @@ class Mixer:
     found: Fragments
     moves: tuple[Floats, Floats]
     """(n,) each: how far the corners' moves take a fragment along x and y."""
+    pieces: list[tuple[int, Piece]]
+    """Triangles, and what the picture's borders may leave of them."""
 
     @classmethod
     def of(cls, triangles: Triangles, found: Fragments) -> Mixer:
         """Moves are sum |l'_i| |d_i|."""
-        rough = cls(found, (np.zeros(0), np.zeros(0)))
-        return cls(found, (rough.most(triangles.reach[0]), rough.most(triangles.reach[1])))
+        rough = cls(found, (np.zeros(0), np.zeros(0)), triangles.pieces(found))
+        x, y = (rough.most(reach) for reach in triangles.reach)
+        for _, piece in rough.pieces:
+            for moved in (x, y):
+                moved[piece.points] = np.maximum(moved[piece.points], piece.moved)
+        return replace(rough, moves=(x, y))
 
     def most(self, sizes: Floats) -> Floats:
         """(n,) the most that sum |l'_i| s_i may be, of sizes (T, 3) >= 0."""
@@ -128,8 +151,11 @@ class Plane:
 
         Barycentrics: conversion of E, their sum, a quotient by it and one by w, a difference, a product, two sums.
         """
-        barycentric = gamma(self.device, 6.0, 2.0) * self.size(mixer.found)
-        return mixer.most(self.error) + np.maximum(barycentric, self.rounding[mixer.found.triangle])
+        barycentric, t = gamma(self.device, 6.0, 2.0) * self.size(mixer.found), mixer.found.triangle
+        pieces = np.zeros(len(t))
+        for triangle, piece in mixer.pieces:
+            pieces[piece.points] = np.maximum(pieces[piece.points], piece.off(self.corner[triangle]))
+        return np.asarray(mixer.most(self.error) + np.maximum.reduce([barycentric, self.rounding[t], pieces]))
 
 
 def _evaluation(triangles: Triangles, a: Floats, device: Device, area: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""What the vertex stage is fed with: a row a point, from the case, or from the atlas that the port handed in."""
+"""What the vertex stage is fed with: a row a point, from the program's atlas, or from the one that the port handed in."""
 
 from __future__ import annotations
 
@@ -10,35 +10,43 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.array_types import Bools, Ints
-from ibr_ref.oracle.accept.bounded import Bounded, stored, uploaded
-from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.arithmetic.bounds import Bounds
+from ibr_ref.oracle.arithmetic.decisions import joined
+from ibr_ref.oracle.arithmetic.number import Number
+from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed
+from ibr_ref.oracle.programs.splatting import Port as Program
+from ibr_ref.oracle.programs.splatting.vertex import Texels
+from ibr_ref.oracle.referees.outcomes import stored
+
+Codes = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """The points of a case, in order of (image, row, column); V of them."""
+    """The points of a case, in order of (image, row, column); V of them, or some."""
 
-    starts: Ints
-    """(N + 1,) where each image's share starts."""
+    image: Ints
+    """(V,) growing."""
     rows: Ints
     columns: Ints
-    depth: Bounded
+    depth: Number
     """(V,) along the reference's view axis."""
-    albedo: Bounded
+    albedo: Number
     """(V, 3)."""
-    codes: NDArray[np.uint8]
+    codes: Codes
     """(V, 3) 8-bit normals that the points are lit with: the port's own, or those that the case hands over."""
+    given: Codes
+    """(V, 3) those that the case hands over."""
     usable: Bools
     """(V,) whether the port's texels can be computed with; elsewhere it went wrong before."""
-    given: NDArray[np.uint8]
-    """(V, 3) the normals that the case hands over."""
 
-    @property
-    def shares(self) -> list[slice]:
-        """The rows of each image's points."""
-        return [slice(first, stop) for first, stop in pairwise(self.starts.tolist())]
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def take(self, index: Ints) -> Table:
+        """Some points."""
+        return Table(**{name: value[index] for name, value in vars(self).items()})
 
     @property
     def lightings(self) -> list[Table]:
@@ -47,88 +55,85 @@ class Table:
             return [self]
         return [self, replace(self, codes=self.given)]
 
+    def shares(self) -> list[tuple[int, slice]]:
+        """Each image and its rows."""
+        ends = [0, *(np.flatnonzero(np.diff(self.image)) + 1).tolist(), len(self)] if len(self) else [0]
+        return [(int(self.image[first]), slice(first, stop)) for first, stop in pairwise(ends)]
 
-def table(case: Case, device: Device, handed: Handed | None = None) -> Table:
-    """The points, with the port's own depths, colours and normals where it handed in an atlas that has them."""
-    handed = {} if handed is None else handed
-    images = [image.arrays for image in case.scene.images]
-    places = [np.nonzero(mask) for _, _, mask in images]
-    counts = [len(rows) for rows, _ in places]
-    rows, columns = (np.concatenate([place[axis] for place in places]) for axis in (0, 1))
-    depth = uploaded(np.concatenate([depth[mask] for _, depth, mask in images]), device)
-    albedo = stored_color(np.concatenate([color[mask] for color, _, mask in images]), device)
-    given = np.concatenate([codes[place] for codes, place in zip(normal_codes(case), places, strict=True)])
-    codes, usable = given, np.ones(len(rows), np.bool_)
-    rects = np.asarray(handed.get("atlas.rects", case.frame.stages["atlas.rects"]), np.int64)
-    for name in ("atlas.depth", "atlas.color", "atlas.normal"):
-        if name in handed:
-            texels, there = _fetched(handed[name], rects, places)
-            texels = np.where(there, texels.T, 1.0).T
-            if name == "atlas.depth":
-                depth = stored(texels, device)
-            elif name == "atlas.color":
-                albedo = _texel_color(texels, device)
-            else:
-                codes = texels.astype(np.uint8)
+    def texels(self, share: slice) -> Texels:
+        """What the program is run on."""
+        codes = list(self.codes[share].T.astype(np.float64))
+        return Texels(self.rows[share], self.columns[share], self.depth[share], self.albedo[share].T, codes)
+
+
+def table(program: Program, atlas: dict[str, Any], given: list[Codes], handed: Handed) -> Table:
+    """All points, with the port's own depths, colours and normals where it handed in an atlas that has them."""
+    ops = program.do
+    rects = np.asarray(handed.get("atlas.rects", atlas["atlas.rects"]), np.int64)
+    depths = [stored(ops, page) for page in handed.get("atlas.depth", ())]
+    colors = [_texel_color(ops, page) for page in handed.get("atlas.color", ())]
+    parts = []
+    for number, image in enumerate(program.scene.images):
+        rows, columns = np.nonzero(image.arrays[2])
+        mine = program.texels(number, atlas, given[number])
+        codes = np.stack(mine.codes, axis=1).astype(np.uint8)
+        depth, albedo = mine.depth, joined_columns(mine.albedo)
+        usable = np.ones(len(rows), np.bool_)
+        if depths:
+            depth, there = _fetched(program, depths, rects[number], rows, columns)
             usable &= there
-    return Table(
-        starts=np.cumsum([0, *counts]),
-        rows=rows,
-        columns=columns,
-        depth=depth,
-        albedo=albedo,
-        codes=codes,
-        usable=usable,
-        given=given,
-    )
+        if colors:
+            albedo, there = _fetched(program, colors, rects[number], rows, columns)
+            usable &= there.all(axis=1)
+        own = codes
+        if "atlas.normal" in handed:
+            own, there = _own_codes(program, handed["atlas.normal"], rects[number], codes, rows, columns)
+            usable &= there
+        of = np.full(len(rows), number)
+        parts.append(Table(of, rows, columns, depth, albedo, own, codes, usable))
+    return Table(**{name: joined([getattr(part, name) for part in parts]) for name in vars(parts[0])})
 
 
-def fed_table(case: Case, device: Device, handed: Handed) -> Table:
-    """The points for a later stage: from the port's atlas, or where that cannot be computed with, from the case."""
-    points = table(case, device, handed)
-    return points if points.usable.all() else table(case, device)
+def joined_columns(components: list[Number]) -> Number:
+    """(n, c) of c numbers (n,)."""
+    stacked: Any = np.stack  # of numbers it is a number
+    found: Number = stacked(components, axis=-1)
+    return found
 
 
-def stored_color(color: NDArray[np.float64], device: Device) -> Bounded:
-    """Colours as a texture has them: rounded once, or k / 255 of a byte, which is a quotient."""
-    return uploaded(color, device).widened(device.quotient * UNIT * color)
+def _fetched(program: Program, pages: list[Number], rect: Ints, rows: Ints, columns: Ints) -> tuple[Number, Bools]:
+    """The port's texels, and which are numbers; 1 and no elsewhere."""
+    shape = (len(rows), *pages[0].shape[2:])
+    if not on_page(pages, rect, rows, columns):
+        return Number(program.do, np.ones(shape)), np.zeros(shape, np.bool_)
+    found = program.fetch(tuple(pages), rect, rows, columns)
+    there = np.isfinite(found.value)
+    return program.do.where(there, found, 1.0), there
 
 
-def _texel_color(texels: NDArray[np.float64], device: Device) -> Bounded:
-    """The port's own colours: of a byte each fetch is a quotient of its own; floats are what they are."""
-    bytes_ = np.rint(255.0 * np.clip(texels, 0.0, 1.0)) / 255.0
-    exactly = stored_color(bytes_, device)
-    return exactly.where(np.abs(texels - bytes_) <= exactly.error + UNIT * bytes_, stored(texels, device))
+def _own_codes(
+    program: Program, pages: Any, rect: Ints, codes: Codes, rows: Ints, columns: Ints
+) -> tuple[Codes, Bools]:
+    """The port's normals, where its rectangle lies on a page."""
+    if not on_page(pages, rect, rows, columns):
+        return codes, np.zeros(len(rows), np.bool_)
+    page, x, y = (int(number) for number in rect[:3])
+    found = program.fetch_normals(np.asarray(pages[page])[y:, x:], rows, columns)
+    return found.astype(np.uint8), np.ones(len(rows), np.bool_)
 
 
-def normal_codes(case: Case) -> list[NDArray[np.uint8]]:
-    """(H, W, 3) 8-bit normals of each image: those that the case hands over, or the reference's."""
-    if "normals" in case.inputs:
-        return [np.asarray(codes) for codes in case.inputs["normals"]]
-    pages, rects = case.frame.stages["atlas.normal"], case.frame.stages["atlas.rects"]
-    return [pages[page][y : y + height, x : x + width] for page, x, y, width, height in rects.tolist()]
-
-
-def cut_out(pages: Any, rect: NDArray[np.int64]) -> NDArray[Any] | None:
-    """An image's texels from the pages of an atlas; None where the rectangle does not lie on one."""
-    page, x, y, width, height = (int(number) for number in rect)
+def on_page(pages: Any, rect: Ints, rows: Ints, columns: Ints) -> bool:
+    """Whether texels of an image lie on its page."""
+    page, x, y = (int(number) for number in rect[:3])
     if not 0 <= page < len(pages) or min(x, y) < 0:
-        return None
-    rows, columns = np.shape(pages[page])[:2]
-    if y + height > rows or x + width > columns:
-        return None
-    return np.asarray(pages[page])[y : y + height, x : x + width]
+        return False
+    height, width = np.shape(pages[page])[:2]
+    return bool(y + rows.max(initial=0) < height and x + columns.max(initial=0) < width)
 
 
-def _fetched(pages: Any, rects: Ints, places: list[tuple[Ints, ...]]) -> tuple[NDArray[np.float64], Bools]:
-    """The texels of all points, and whether they are there and finite."""
-    parts, there = [], []
-    channels = np.shape(pages[0])[2:]
-    for rect, place in zip(rects, places, strict=True):
-        texels, found = np.full((len(place[0]), *channels), np.nan), cut_out(pages, rect)
-        if found is not None:
-            inside = (place[0] < found.shape[0]) & (place[1] < found.shape[1])
-            texels[inside] = found[place[0][inside], place[1][inside]]
-        parts.append(texels)
-        there.append(np.isfinite(texels).all(axis=tuple(range(1, texels.ndim))))
-    return np.concatenate(parts), np.concatenate(there)
+def _texel_color(ops: Bounds, texels: Any) -> Number:
+    """The port's own colours: of a byte each fetch is a quotient of its own; floats are what they are."""
+    texels = np.asarray(texels, np.float64)
+    bytes_ = np.rint(255.0 * np.clip(np.nan_to_num(texels), 0.0, 1.0)) / 255.0
+    fetched = ops.widened(ops.texels(bytes_), quotients=1)
+    return ops.where(np.abs(texels - bytes_) <= fetched.error + UNIT * bytes_, fetched, stored(ops, texels))

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ibr_ref.array_types import Bools
+from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.judgement import Judgement
 
 
@@ -14,9 +13,9 @@ def judgement(
     element: str,
     bad: dict[str, Bools],
     undecided: Bools,
-    width: NDArray[np.float64],
+    width: Floats,
     replayed: tuple[str, ...] = (),
-    places: NDArray[np.int64] | None = None,
+    places: Ints | None = None,
 ) -> Judgement:
     """bad: for each array that was compared, in order, where no legal outcome that agrees with those before has it."""
     blame = np.full(undecided.shape, -1, np.int8)

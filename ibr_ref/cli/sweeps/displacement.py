@@ -1,0 +1,116 @@
+"""`ibr-ref sweep displacement`."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ibr_ref.cli import base_polygon, options
+from ibr_ref.cli.sweeps import shared
+from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
+
+EXAMPLES = """
+Examples:
+
+    ibr-ref sweep displacement --height h.png --over steps=5:100:5 --over delta=0.02,0.05,0.1 --views 8
+    --out sweep.parquet
+
+    ibr-ref sweep displacement --height h.png --over steps=5:100:5 --bound wrong=0.005 --plot frontier.png
+
+    ibr-ref sweep displacement --over method=protruded,relief,tatarchuk --bound silhouette=0.99 --cost milliseconds
+"""
+
+
+class Against(StrEnum):
+    """What is true."""
+
+    exact = "exact"
+
+
+def command(
+    over: shared.Overs,
+    height: Annotated[
+        Path | None, typer.Option(help="Height map, as `ibr-ref render` reads it. Without: the built-in box.")
+    ] = None,
+    height_range: Annotated[
+        options.Pair | None,
+        typer.Option(
+            parser=options.pair, metavar="LOW,HIGH", help="Heights that become 0 and 1, in the file's numbers."
+        ),
+    ] = None,
+    color: Annotated[Path | None, typer.Option(help="Colour map. Without: greys by height.")] = None,
+    normal: Annotated[Path | None, typer.Option(help="Normal map (+y is up). Without: from the heights.")] = None,
+    facade: Annotated[Path | None, typer.Option(help="Tile that covers steep walls.")] = None,
+    facade_tile: Annotated[
+        options.Pair, typer.Option(parser=options.pair, metavar="W,H", help="Size of a facade tile, world units.")
+    ] = options.Pair(0.1, 0.1),
+    invert_height: Annotated[bool, typer.Option("--invert-height", help="White is deep in the height map.")] = False,
+    height_scale: Annotated[
+        float | None, typer.Option(parser=options.number, help="Height of white, world units. Without: 0.15.")
+    ] = None,
+    eye: Annotated[
+        options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="The eye of the first view.")
+    ] = options.Vector(0.6, -1.25, 0.95),
+    target: Annotated[
+        options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point that it looks at.")
+    ] = options.Vector(0, 0, 0),
+    light: Annotated[
+        options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="Direction towards the light.")
+    ] = options.Vector(-0.6, -0.5, 1),
+    size: shared.Size = shared.SMALL,
+    views: shared.Views = 1,
+    against: Annotated[
+        Against, typer.Option(help="What is true: the first intersection with the solid.")
+    ] = Against.exact,
+    out: shared.Out = None,
+    plot: shared.Plot = None,
+    bound: shared.OfBound = None,
+    cost: shared.Cost = None,
+    scheduler: shared.Scheduler = None,
+    workers: shared.Workers = None,
+) -> None:
+    """Which parameters does my height map need? Every combination from every view, against the first intersection.
+
+    Measures: wrong (share of the pixels), silhouette, smear, drift, fetches, milliseconds.
+    """
+
+    def make() -> tuple[Any, Any]:
+        from ibr_ref import displacement, models
+        from ibr_ref.scene import Camera, Light
+
+        if height is None:
+            polygon = models.box()
+        else:
+            heights, normals = base_polygon.read_maps(
+                height, None, normal, invert_height=invert_height, exif=True, height_range=height_range
+            )
+            proportions = heights.proportions(height_scale, None)
+            polygon = base_polygon.polygon(
+                heights, normals, color, facade, proportions=proportions, facade_tile=facade_tile, exif=True
+            )
+        view = Camera.look_at(
+            eye=eye, target=target, up=options.up(eye, target), vertical_fov=45.0, width=size.width, height=size.height
+        )
+        scene = displacement.Scene(
+            polygons=[polygon],
+            camera=view.fitted(displacement.bounding_points([polygon], view)),
+            light=Light(direction=light),
+            background=(1.0, 1.0, 1.0),
+        )
+        return scene, against.value
+
+    shared.run("displacement", shared.Wanted(over, views, out, plot, bound, cost, scheduler, workers), make)
+
+
+def goes_with() -> dict[str, Beside]:
+    """Beside which others each option is read."""
+    of_file = ("height_range", "color", "normal", "facade", "invert_height", "height_scale")
+    return {
+        **shared.goes_with(),
+        **always("height", "eye", "target", "light"),
+        **{name: Beside("the built-in box has its own maps", {"height": GIVEN}) for name in of_file},
+        "facade_tile": Beside("facade_tile is the size of its tiles", {"facade": GIVEN}),
+    }

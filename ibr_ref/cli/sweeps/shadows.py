@@ -1,0 +1,79 @@
+"""`ibr-ref sweep shadows`."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ibr_ref.cli import options, shadows_stage
+from ibr_ref.cli.sweeps import shared
+from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
+
+EXAMPLES = """
+Examples:
+
+    ibr-ref sweep shadows --over map_size=64,128,256,512 --over rows=5:15:5 --over columns=5 --views 8 --out sweep.parquet
+
+    ibr-ref sweep shadows --caster cow.obj --over samples=1,5,9 --over method=warp,grid --bound soft=0.05 --plot frontier.png
+"""
+
+
+class Against(StrEnum):
+    """What is true."""
+
+    direct = "direct"
+
+
+def command(
+    over: shared.Overs,
+    caster: Annotated[Path | None, typer.Option(help="The mesh that moves. Without: a horse.")] = None,
+    up: Annotated[
+        shadows_stage.Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")
+    ] = None,
+    light: Annotated[
+        options.Vector | None,
+        typer.Option(parser=options.vector, metavar="X,Y,Z", help="Where the light is. Without: -1,-1.2,5."),
+    ] = None,
+    light_size: Annotated[
+        options.Pair,
+        typer.Option(parser=options.one_or_two, metavar="A[,B]", help="Half the side of the light, or of both sides."),
+    ] = options.Pair(0.12, 0.12),
+    size: shared.Size = shared.SMALL,
+    views: shared.Places = 1,
+    against: Annotated[
+        Against, typer.Option(help="What is true: maps rendered for every sample of the light.")
+    ] = Against.direct,
+    out: shared.Out = None,
+    plot: shared.Plot = None,
+    bound: shared.OfBound = None,
+    cost: shared.Cost = None,
+    scheduler: shared.Scheduler = None,
+    workers: shared.Workers = None,
+) -> None:
+    """Which maps does my caster need? Every combination at every place of the caster, against maps rendered there.
+
+    Measures: map, shadow (intersections over unions), soft (difference), bytes, milliseconds.
+    """
+
+    def make() -> tuple[Any, Any]:
+        from ibr_ref import io, models
+
+        mesh = models.horse() if caster is None else io.read_upright(caster, None if up is None else up.value)
+        scene = models.shadow_stage(
+            mesh, light_position=light, light_size=light_size, width=size.width, height=size.height
+        )
+        return scene, against.value
+
+    shared.run("shadows", shared.Wanted(over, views, out, plot, bound, cost, scheduler, workers), make)
+
+
+def goes_with() -> dict[str, Beside]:
+    """Beside which others each option is read."""
+    return {
+        **shared.goes_with(),
+        **always("caster", "light", "light_size"),
+        "up": Beside("the built-in horse stands", {"caster": GIVEN}),
+    }

@@ -1,5 +1,0 @@
-"""The computation of one element of a stage, reference and port side by side."""
-
-from ibr_ref.oracle.referees.splatting.trace.elements import trace
-
-__all__ = ["trace"]

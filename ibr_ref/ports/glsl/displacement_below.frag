@@ -1,0 +1,125 @@
+// Searches below the polygon, which is the top of the volume; displacement.py puts it into displacement.frag.
+//   RELIEF, MCGUIRE, TATARCHUK, WELSH, CONE, RELAXED_CONE      one of them is defined
+//   MIN_STEPS, MAX_STEPS      of TATARCHUK
+
+layout(binding = 4) uniform sampler2D cone_map;
+
+bool on_map(vec2 uv) {
+#ifdef REPEAT
+    return true;
+#else
+    return all(greaterThanEqual(uv, vec2(0.0))) && all(lessThanEqual(uv, vec2(1.0)));
+#endif
+}
+
+/** World length of the view ray from depth 1 up to the polygon. */
+float ray_length(vec2 along) {
+    return length(along.x * edge_u.xyz + along.y * edge_v.xyz + edge_h.xyz);
+}
+
+/** Depth after all cone steps. */
+float cone_steps(vec2 uv, vec2 along) {
+    float speed = length(along);
+    float d = 0.0;
+    for (int i = 0; i < LINEAR_STEPS; ++i) {
+        vec2 at = uv - along * d;
+        float ratio = textureLod(cone_map, at, 0.0).r;
+        d += ratio * max(0.0, 1.0 - height(at) - d) / (speed + ratio);
+    }
+    return d;
+}
+
+Hit march(vec3 c) {
+    vec3 v = eye_patch.xyz - eye_patch.w * c;
+    vec2 along = v.xy / v.z;
+    Hit hit = Hit(false, vec3(c.xy, 0.0), -1.0, -1.0, 0.0, false);
+    if (!(v.z > 0.0)) return hit;
+    float d = 0.0;
+    float before = 0.0;
+    float step = -1.0;
+    float index = -1.0;
+#if defined(RELIEF)
+    float last = 0.0;
+    for (int i = 0; i <= LINEAR_STEPS && step < 0.0; ++i) {
+        vec2 at = c.xy - along * (float(i) * STEP);
+        float here = on_map(at) ? height(at) : 0.0;
+        if (on_map(at) && float(i) * STEP >= 1.0 - here) {
+            step = float(i);
+            before = last;
+        }
+        last = here;
+    }
+    index = step * FINE;
+    if (step > 0.0) {
+        for (float half_bracket = 0.5 * FINE; half_bracket >= 1.0; half_bracket *= 0.5) {
+            float middle = (index - half_bracket) / LATTICE;
+            vec2 at = c.xy - along * middle;
+            if (on_map(at) && middle >= 1.0 - height(at)) index -= half_bracket;
+        }
+    }
+    d = index / LATTICE;
+#elif defined(MCGUIRE)
+    float count = floor(mix(2.0 * float(LINEAR_STEPS), float(LINEAR_STEPS), search.x / ray_length(along)) + 0.5);
+    float last = 0.0;
+    for (float k = 0.0; k <= count; k += 1.0) {
+        vec2 at = c.xy - along * (k / count);
+        if (!on_map(at)) break;
+        float here = height(at);
+        if (k / count >= 1.0 - here) {
+            step = k;
+            before = last;
+            break;
+        }
+        last = here;
+    }
+    index = step;
+    d = step / count;
+#elif defined(TATARCHUK)
+    float count = floor(mix(float(MAX_STEPS), float(MIN_STEPS), search.x / ray_length(along)));
+    float last = 1.0;
+    step = count;
+    d = 1.0;
+    for (float k = 1.0; k <= count; k += 1.0) {
+        float ray = 1.0 - k / count;
+        vec2 at = c.xy - along * (1.0 - ray);
+        if (!on_map(at)) break;
+        float here = height(at);
+        if (here > ray) {
+            float ray_before = 1.0 - (k - 1.0) / count;
+            float over = ray_before - last;
+            float under = here - ray;
+            step = k;
+            before = last;
+            d = 1.0 - (ray * over + ray_before * under) / (over + under);
+            break;
+        }
+        last = here;
+    }
+    index = step;
+#elif defined(WELSH)
+    step = 0.0;
+    index = 0.0;
+    hit.position.xy += height(c.xy) * search.x * along / ray_length(along);
+#else
+    step = float(LINEAR_STEPS);
+    index = step;
+    d = cone_steps(c.xy, along);
+#if defined(RELAXED_CONE) && BINARY_STEPS > 0
+    float stretch = 0.5 * d;
+    d = stretch;
+    for (int i = 0; i < BINARY_STEPS; ++i) {
+        stretch *= 0.5;
+        vec2 at = c.xy - along * d;
+        d += on_map(at) && d >= 1.0 - height(at) ? -stretch : stretch;
+    }
+#endif
+#endif
+#ifndef WELSH
+    hit.position = vec3(c.xy - along * d, -d);
+#endif
+    hit.found = step >= 0.0 && on_map(hit.position.xy);
+    hit.linear_index = step;
+    hit.hit_index = index;
+    hit.before = before;
+    return hit;
+}

@@ -1,0 +1,154 @@
+"""Protruded displacement mapping in WGSL: the same inputs as `ibr_ref.displacement.render`, in float32.
+
+The scene is that of an exported case, as case_folder.py reads it; nothing else of `ibr_ref` is imported. Ported is
+method="protruded" with all intervals, domains, faces and depths, normal map, facade map and self-shadow. Each of three
+passes draws all polygons with a depth buffer of its own and hands on two attachments; the depth tests come out alike, as
+the passes compute the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import wgpu
+
+from ibr_ref.ports.frame import Frame
+from ibr_ref.ports.glsl.patch_frame import PatchFrame
+from ibr_ref.ports.wgsl import gpu
+
+PASSES = {
+    "picture": (("color", "rgba32uint"), ("index", "rgba32sint")),
+    "hits": (("patch", "rgba32uint"), ("hit", "rgba32uint")),
+    "looks": (("albedo", "rgba32uint"), ("normal", "rgba32uint")),
+}
+"""By entry point: attachments and their kinds."""
+CORNERS = gpu.Vertices(16, [("float32x3", 0), ("sint32", 12)])
+
+
+@dataclass
+class _Draw:
+    """One polygon, ready to be submitted."""
+
+    code: str
+    resources: dict[int, Any]
+    faces: np.ndarray
+    vertices: Any
+    indices: Any
+
+
+class Port:
+    """The port on one device."""
+
+    def __init__(self, device: gpu.Device | None = None) -> None:
+        self.device = device or gpu.create_device()
+
+    def render(self, scene: Any, params: Any) -> Frame:
+        """One frame with all stages, read back. Raises ValueError for what is not ported."""
+        if params.method != "protruded":
+            raise ValueError(f"method = {params.method!r}: the port allows protruded")
+        frames = [PatchFrame.of(polygon, scene) for polygon in scene.polygons]
+        draws = [draw for number, frame in enumerate(frames) if (draw := self._draw(frame, number, params)) is not None]
+        width, height = int(scene.camera.width), int(scene.camera.height)
+        depth = gpu.target(self.device, width, height, "depth32float")
+        found: dict[str, np.ndarray] = {}
+        for entry, attachments in PASSES.items():
+            targets = [gpu.target(self.device, width, height, kind) for _, kind in attachments]
+            background = gpu.bits([*scene.background, 0.0])
+            clears = [background, (-1, -1, -1, -1)] if entry == "picture" else [(0, 0, 0, 0)] * 2
+            self._pass(draws, entry, list(zip(targets, clears, strict=True)), depth)
+            pairs = zip(attachments, targets, strict=True)
+            for (name, kind), each in pairs:
+                read = gpu.read_floats if kind == "rgba32uint" else gpu.read_texture
+                found[name] = read(self.device, each)
+            if entry == "picture":
+                found["depth"] = gpu.read_depth(self.device, depth).astype(np.float64)
+        stages = _stages(found)
+        depths = np.where(stages["march.hit_index"] < 0, 1.0, found["depth"])
+        return Frame(found["color"][..., :3].astype(np.float64), depths, self._vertices(draws) | stages)
+
+    def _draw(self, frame: PatchFrame, number: int, params: Any) -> _Draw | None:
+        """Buffers, textures and code of one polygon; None: no face of it is drawn."""
+        faces = frame.faces(params.faces, params.interval)
+        if not len(faces):
+            return None
+        device, polygon, unused = self.device, frame.polygon, np.zeros((1, 1, 3))
+        maps = [polygon.height_map, polygon.color_map, polygon.normal_map, polygon.facade_map]
+        resources: dict[int, Any] = {0: gpu.buffer(device, frame.uniforms(number), wgpu.BufferUsage.UNIFORM)}
+        resources |= {i: gpu.upload(device, unused if m is None else m) for i, m in enumerate(maps, 1)}
+        quads = 4 * np.arange(len(faces))[:, None] + np.array([0, 1, 2, 0, 2, 3])
+        return _Draw(
+            code=_constants(frame, params) + gpu.source("displacement.wgsl"),
+            resources=resources,
+            faces=faces,
+            vertices=gpu.buffer(device, faces.tobytes(), wgpu.BufferUsage.VERTEX),
+            indices=gpu.buffer(device, quads.astype(np.uint32).tobytes(), wgpu.BufferUsage.INDEX),
+        )
+
+    def _pass(self, draws: list[_Draw], entry: str, colors: list[tuple[Any, Any]], depth: Any) -> None:
+        encoder = self.device.device.create_command_encoder()
+        drawing = gpu.begin(encoder, colors, depth)
+        kinds = [kind for _, kind in PASSES[entry]]
+        for draw in draws:
+            pipeline = gpu.pipeline(self.device, draw.code, ("vertex", entry), kinds, [CORNERS])
+            drawing.set_pipeline(pipeline)
+            drawing.set_bind_group(0, gpu.bind(self.device, pipeline, draw.resources))
+            drawing.set_vertex_buffer(0, draw.vertices)
+            drawing.set_index_buffer(draw.indices, "uint32")
+            drawing.draw_indexed(6 * len(draw.faces))
+        drawing.end()
+        self.device.device.queue.submit([encoder.finish()])
+
+    def _vertices(self, draws: list[_Draw]) -> dict[str, np.ndarray]:
+        """The corners in patch space, and in clip space as the shader makes them."""
+        clips, points = [np.zeros((0, 4), np.float32)], [np.zeros((0, 3), np.float32)]
+        storage, copied = wgpu.BufferUsage.STORAGE, wgpu.BufferUsage.COPY_SRC
+        for draw in draws:
+            patch = draw.faces["patch"].reshape(-1, 3)
+            rows = np.column_stack([patch, np.zeros(len(patch), np.float32)])
+            given = gpu.buffer(self.device, rows.tobytes(), storage)
+            made = gpu.buffer(self.device, np.zeros_like(rows).tobytes(), storage | copied)
+            gpu.compute(self.device, draw.code, "vertices", {0: draw.resources[0], 5: given, 6: made}, len(rows))
+            clips.append(gpu.read_buffer(self.device, made, np.float32, 4))
+            points.append(patch)
+        return {"vertex.clip": np.concatenate(clips), "vertex.patch": np.concatenate(points)}
+
+
+def _constants(frame: PatchFrame, params: Any) -> str:
+    """`params` and the shape of the scene."""
+    polygon = frame.polygon
+    return gpu.constants(
+        {
+            "LINEAR_STEPS": int(params.linear_steps),
+            "BINARY_STEPS": int(params.binary_steps),
+            "SHADOW_STEPS": int(params.shadow_steps),
+            "SHADOW_BIAS": float(params.shadow_bias),
+            "STEEP_THRESHOLD": float(params.steep_threshold),
+            "EXPONENT": int(frame.scene.light.exponent),
+            "HAS_NORMAL_MAP": polygon.normal_map is not None,
+            "HAS_FACADE_MAP": polygon.facade_map is not None,
+            "POLYGON_DEPTH": params.depth == "polygon",
+            "REPEAT": polygon.domain == "repeat",
+            "VOLUME": params.interval == "volume",
+        }
+    )
+
+
+def _stages(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The attachments under the specification's names, with its values of "nothing here"."""
+    index, patch, hit, albedo, normal = (found[name] for name in ("index", "patch", "hit", "albedo", "normal"))
+    covered, kept, nothing = index[..., 0] >= 0, index[..., 3] >= 0, np.float32(np.nan)
+    return {
+        "raster.face": index[..., 0].copy(),
+        "raster.patch_id": index[..., 1].copy(),
+        "raster.patch": np.where(covered[..., None], patch[..., :3], nothing),
+        "march.linear_index": index[..., 2].copy(),
+        "march.hit_index": index[..., 3].copy(),
+        "march.hit": np.where(kept[..., None], hit[..., :3], nothing),
+        "march.height_before": np.where(covered, hit[..., 3], nothing),
+        "march.steep": kept & (normal[..., 3] > 0.5),
+        "shade.albedo": np.where(kept[..., None], albedo[..., :3], nothing),
+        "shade.normal": np.where(kept[..., None], normal[..., :3], nothing),
+        "shade.lit": kept & (albedo[..., 3] > 0.5),
+    }

@@ -1,0 +1,82 @@
+"""A FAIL names the bug: that of the broken port, with what this case does not tell from it, and never another one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ibr_ref.oracle.device import IEEE32
+from ibr_ref.oracle.faults.splatting import MUTANTS, Port
+from tests.oracle.judgements import in_bytes, picture
+from tests.oracle.splatting.judged import REFEREE, Arrays, case, drawn
+
+LAMP = "splatting-lamp"
+STAGED = (
+    "normals-face-the-view",
+    "depths-of-half-precision",
+    "four-decimals",
+    "beta-too-large",
+    "fast-inverse-square-root",
+    "size-as-radius",
+    "encoded-for-screens",
+    "color-of-the-pixel-above",
+)
+"""One of each kind; all of them are in the note of the naming tables."""
+PICTURED = ("upside-down", "half-vector")
+
+
+def named(arrays: Arrays) -> list[str]:
+    judgements = REFEREE.judge_stages(case(LAMP), IEEE32, arrays, to_first_wrong=True) if len(arrays) > 2 else []
+    judgements.append(REFEREE.judge_image(case(LAMP), IEEE32, arrays))
+    wrong = next(j for j in judgements if j.wrong.any())
+    found = REFEREE.causes(case(LAMP), IEEE32, arrays, wrong)
+    assert found is not None
+    assert found.given_up_after is None
+    return [cause.name for cause in found.causes]
+
+
+def broken(name: str) -> Arrays:
+    return drawn(LAMP, port=next(m.port for m in MUTANTS if m.name == name))
+
+
+@pytest.mark.parametrize("mutant", STAGED)
+def test_the_bug_is_named(mutant: str) -> None:
+    assert named(broken(mutant)) == [mutant]
+
+
+@pytest.mark.parametrize("mutant", PICTURED)
+def test_the_bug_is_named_by_the_picture_alone(mutant: str) -> None:
+    assert named(picture(broken(mutant))) == [mutant]
+
+
+def test_what_looks_alike_is_named_together() -> None:
+    """Bytes that are rounded down and bytes over 256 are the same where no byte is 255."""
+    assert named(broken("bytes-over-256")) == ["truncated-bytes", "bytes-over-256"]
+
+
+class _Unknown(Port):
+    """A bug that is in no catalogue: the window is a thousandth too wide."""
+
+    def window_x(self, x: Any) -> Any:
+        return 1.001 * super().window_x(x)
+
+
+@pytest.mark.parametrize("kept", [lambda arrays: arrays, in_bytes], ids=["stages", "bytes"])
+def test_a_bug_that_is_not_known_has_no_name(kept: Any) -> None:
+    assert named(kept(drawn(LAMP, port=_Unknown))) == []
+
+
+def test_what_a_fault_does_not_change_is_shared() -> None:
+    """A suspect of the light has the right program's points."""
+    from ibr_ref.oracle.referees.splatting.model import Model
+
+    right = Model(case(LAMP), IEEE32)
+    of = {m.name: Model(case(LAMP), IEEE32, m.port, right) for m in MUTANTS}  # type: ignore[arg-type]
+    assert of["no-clamp"].own_places is right.own_places
+    assert of["closed-borders"].own_contest is not right.own_contest
+    assert of["upside-down"].own is not right.own
+    np.testing.assert_array_equal(
+        of["half-pixel-shift"].own_places.window[0].value, right.own_places.window[0].value - 0.5
+    )
