@@ -18,7 +18,7 @@ PROGRAM = next(
 )
 MISSING = "no Chromium: Debian's package chromium has one"
 
-PATIENCE = 30.0
+PATIENCE = 60.0
 """Seconds for what a page is to come to."""
 
 

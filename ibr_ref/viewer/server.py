@@ -8,7 +8,7 @@ import secrets
 import tempfile
 import zipfile
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from functools import cache
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -54,6 +54,7 @@ class Server(ThreadingHTTPServer):
         """Port 0: one that is free. Raises OSError for one that is taken."""
         self.session = session
         self.token = secrets.token_urlsafe(16)
+        self.ended = False
         self.worker = ThreadPoolExecutor(1, "render")
         try:
             super().__init__((LOOPBACK, port), _Handler)
@@ -71,6 +72,7 @@ class Server(ThreadingHTTPServer):
 
     def server_close(self) -> None:
         """Also end the thread that renders, once it has drawn what it is at."""
+        self.ended = True
         super().server_close()
         self.worker.shutdown(wait=False, cancel_futures=True)
 
@@ -108,6 +110,10 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.OK, self.server.answer(name, question))
         except (ValueError, OSError, MemoryError, RecursionError) as error:
             self._refuse(HTTPStatus.BAD_REQUEST, checks.one_line(error, checks.LONGEST_MESSAGE))
+        except (CancelledError, RuntimeError):
+            if not self.server.ended:
+                raise
+            self.close_connection = True  # nobody draws any more
 
     def _name(self) -> str | None:
         """What follows the token; None for whoever does not know it, or came by another name, as a site of the net might."""

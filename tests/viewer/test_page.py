@@ -27,7 +27,10 @@ RESTED = "document.body.dataset.rested === 'yes'"
 def server() -> Iterator[Server]:
     subject = block()
     drawing = {"color": 1.0 - render(subject.scene, subject.params).color}
-    with Server(Session(replace(subject, drawing=drawing))) as made:
+    session = Session(replace(subject, drawing=drawing))
+    session.start()
+    session.difference({})  # kernels that have to be compiled take longer than a page is waited for
+    with Server(session) as made:
         thread = threading.Thread(target=made.serve_forever)
         thread.start()
         yield made

@@ -11,6 +11,7 @@ from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from tests.oracle.displacement.drawn import REFEREE, Arrays, case, draw, reference
+from tests.oracle.tiny_cases import TINY
 
 TRACED = tuple(f"displacement-{name}" for name in ("extended", "tiles", "street", "crossing", "borders"))
 """Each way to draw and to search, several polygons."""
@@ -45,6 +46,26 @@ def test_the_reference_differs_nowhere() -> None:
         rows = REFEREE.trace(case(name), IEEE32, arrays, "image", (int(row), int(column)))
         assert not [r for r in rows if r.note == "differs"]
         assert {"colour", "shade.albedo", "shade.normal", "lit"} <= {r.step for r in rows}
+
+
+def test_the_terms_of_a_colour_make_it() -> None:
+    """Albedo times brightness and the highlight, of walls with the place on their tile."""
+    what = TINY["displacement-hill"]()
+    frame = what.frame
+    arrays = {name: array for name, array in frame.stages.items() if not name.endswith("margin")}
+    for steep in (True, False):
+        shown = np.argwhere((frame.stages["march.steep"] == steep) & (frame.stages["march.hit_index"] >= 0))
+        row, column = map(int, shown[len(shown) // 2])
+        rows = {r.step: r.reference for r in REFEREE.trace(what, IEEE32, arrays, "shade", (row, column))}
+        cosine, brightness = float(rows["n . l"]), float(rows["ambient + diffuse max(0, n . l) where lit"])
+        light, lit = what.scene.light, bool(frame.stages["shade.lit"][row, column])
+        assert brightness == pytest.approx(light.ambient + light.diffuse * max(0.0, cosine) * lit, abs=1e-6)
+        highlight = light.specular * max(0.0, float(rows["r . v"])) ** light.exponent * (lit and cosine > 0.0)
+        assert float(rows["highlight"]) == pytest.approx(highlight, abs=1e-6)
+        color = frame.stages["shade.albedo"][row, column] * brightness + highlight
+        assert frame.color[row, column] == pytest.approx(color.clip(0, 1), abs=1e-6)
+        assert ("tiles across, and down" in rows) == steep
+        assert rows.get("the wall faces along", "u") in ("u", "v")
 
 
 @pytest.mark.parametrize("name", TRACED)
