@@ -14,7 +14,7 @@ from ibr_ref.oracle.arithmetic.decisions import joined
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.pipeline.splats import Contest, contest
+from ibr_ref.oracle.pipeline.splats import Contest, contest, recut
 from ibr_ref.oracle.programs.splatting import Port as Program
 from ibr_ref.oracle.referees.outcomes import converted, stored
 from ibr_ref.oracle.referees.reads import fed
@@ -122,7 +122,8 @@ def named(model: Model, points: Table, placed: Placed, handed: Handed) -> Seen:
     judged = (winner >= -1) & (winner < len(points))
     pixel = np.flatnonzero(judged)
     winner = winner[pixel]
-    depth = model.machine.where(winner >= 0, model.program.stored_depth(placed.depth)[np.maximum(winner, 0)], 1.0)
+    depth = model.program.stored_depth(recut(model.program, placed).depth)[np.maximum(winner, 0)]
+    depth = model.machine.where(winner >= 0, depth, 1.0)
     if "raster.depth" not in handed:
         judged[pixel[~np.isfinite(depth.value)]] = False
     return Seen(pixel, winner, depth, judged)
