@@ -37,7 +37,7 @@ __all__ = [
     "view",
 ]
 
-_MODULES = ("displacement", "io", "metrics", "models", "oracle", "shadows", "splatting")
+_MODULES = ("displacement", "io", "metrics", "models", "oracle", "shadows", "splatting", "sweep")
 
 
 def __getattr__(name: str) -> Any:

@@ -14,7 +14,7 @@ from typing import Annotated
 import typer
 
 from ibr_ref import methods
-from ibr_ref.cli import bench, check, demo, draw, export, hunt, method, reproduce, view
+from ibr_ref.cli import bench, check, conformance, demo, draw, export, hunt, method, reproduce, view
 from ibr_ref.cli.command import Command
 from ibr_ref.cli.interruption import CODE, heard
 
@@ -46,6 +46,7 @@ app.command("method", cls=Command, epilog=method.EXAMPLES)(method.command)
 app.command("export", cls=Command, epilog=export.EXAMPLES)(export.command)
 app.command("draw", cls=Command, epilog=draw.EXAMPLES)(draw.command)
 app.command("check", cls=Command, epilog=check.EXAMPLES)(check.command)
+app.command("conformance", cls=Command, epilog=conformance.EXAMPLES)(conformance.command)
 app.command("hunt", cls=Command, epilog=hunt.EXAMPLES)(hunt.command)
 app.command("bench", cls=Command, epilog=bench.EXAMPLES)(bench.command)
 app.command("reproduce", cls=Command, epilog=reproduce.EXAMPLES)(reproduce.command)
@@ -86,7 +87,9 @@ def main() -> None:
     except BrokenPipeError:  # whoever reads standard output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # or Python complains of what it could not flush
         code = _BROKEN_PIPE
-    except (ValueError, OSError, MemoryError) as error:
+    except MemoryError as error:
+        code = _fail(f"out of memory: {error}" if str(error) else "out of memory")
+    except (ValueError, OSError) as error:
         code = _fail(str(error) or type(error).__name__)
     except (KeyboardInterrupt, typer.Abort):
         code = CODE

@@ -6,15 +6,19 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ibr_ref import methods
 from ibr_ref.cli import json_output
 from ibr_ref.cli.judging import Finding, Judging, worst
+from ibr_ref.cli.tables import counted
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.progress import progress
+
+if TYPE_CHECKING:
+    from ibr_ref.oracle.report import Entry
 
 EXAMPLES = """
 Examples:
@@ -80,7 +84,10 @@ def command(
         ),
     ] = None,
     report: Annotated[
-        Path | None, typer.Option(help="Also write it as one HTML page, with pictures; of many a folder of pages.")
+        Path | None,
+        typer.Option(
+            help="Also write it as one HTML page, with pictures; of many a folder of them, with an index.html."
+        ),
     ] = None,
     junit: Annotated[Path | None, typer.Option(help="Also write it as JUnit XML.")] = None,
     watch: Annotated[
@@ -111,13 +118,18 @@ def _checked(judging: Judging, outputs: Outputs, fail_fast: bool) -> int:
     """Judge, write, say; the exit code."""
     jobs = judging.jobs()
     findings: list[Finding] = []
+    entries: list[Entry] = []
     with progress(len(jobs)) as step:
         for name, judge in jobs:
             step(name)
             findings.append(judge())
-            _write_report(findings[-1], outputs.report, many=judging.many)
+            _write_report(findings[-1], outputs.report, entries if judging.many else None)
             if fail_fast and worst(findings):
                 break
+    if entries and outputs.report is not None:
+        from ibr_ref.oracle.report import write_run
+
+        write_run(entries, outputs.report)
     _write(findings, outputs, many=judging.many)
     aside = json_output.is_standard_output(outputs.json)
     for finding in findings:
@@ -168,11 +180,17 @@ def _check_writable(outputs: Outputs, *, many: bool) -> None:
             io.check_writable(outputs.report)
 
 
-def _write_report(finding: Finding, report: Path | None, *, many: bool) -> None:
+def _write_report(finding: Finding, report: Path | None, entries: list[Entry] | None) -> None:
+    """The page of a case; of many it is one in a folder, and an entry of the run's."""
+    if report is None:
+        return
     from ibr_ref import oracle
+    from ibr_ref.oracle.report import entry
 
-    if report is not None and finding.examination is not None:
-        oracle.write_report(finding.examination, report / f"{finding.name}.html" if many else report)
+    if entries is not None:
+        entries.append(entry(finding.name, finding.verdict, finding.seconds, finding.examination))
+    if finding.examination is not None:
+        oracle.write_report(finding.examination, report if entries is None else report / f"{finding.name}.html")
 
 
 def _write(findings: Sequence[Finding], outputs: Outputs, *, many: bool) -> None:
@@ -193,7 +211,7 @@ def _table(findings: Sequence[Finding], jobs: int) -> list[str]:
     counts = [finding.verdict.outcome for finding in findings]
     said = ", ".join(f"{counts.count(outcome)} {outcome}" for outcome in dict.fromkeys(sorted(counts, key=str)))
     left = jobs - len(findings)
-    return [*lines, f"{len(findings)} cases: {said}" + (f"; {left} not tried." if left else ".")]
+    return [*lines, f"{counted(len(findings), 'case')}: {said}" + (f"; {left} not tried." if left else ".")]
 
 
 def _said(finding: Finding) -> str:
@@ -206,6 +224,8 @@ def _said(finding: Finding) -> str:
     if first is not None:
         blamed = ", ".join(first.blamed)
         how = f"first wrong in {first.stage}: {first.wrong:,} of {first.elements:,} elements, {blamed} ({how})"
+        if verdict.causes:
+            how += f", explained by {' or '.join(cause.name for cause in verdict.causes)}"
     elif verdict.biases:
         how = f"first wrong in {verdict.first_wrong_stage}: {verdict.biases[0].parameter} ({how})"
     return f"{how}, {finding.seconds:.1f} s"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import base_polygon, depth_set_options, emptiness, options, own_case
+from ibr_ref.cli import base_polygon, depth_set_options, emptiness, options, own_case, pictures
 from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 from ibr_ref.methods import named
@@ -25,6 +25,8 @@ Examples:
     --out image.png --stages dump.npz
 
     ibr-ref render displacement --height dem.tif --height-range 350,4850 --texel-size 30 --out terrain.png
+
+    ibr-ref render displacement --height dem.tif --size 16384x16384 --out poster.tif
 
     ibr-ref render displacement --height h.png --color c.png --method tatarchuk --max-steps 80 --out occlusion.png
 """
@@ -228,6 +230,10 @@ def read(
 @beside(read)
 def command(
     out: options.Out,
+    path: pictures.CameraPath = None,
+    frames: pictures.Frames = 120,
+    video: pictures.Video = None,
+    fps: pictures.Fps = 30.0,
     depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
@@ -235,25 +241,39 @@ def command(
     **described: Any,
 ) -> None:
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
+    whole = {"stages": stages, "depth_set": depth_set}
+    wanted = pictures.Wanted(
+        out=out, bits=bits, path=path, frames=frames, video=video, fps=fps, fov=described["fov"], whole=whole
+    )
     with progress(3) as step:
         step("reading maps")
         from ibr_ref import displacement, io
 
-        io.check_image_writable(out, bits)
+        wanted.check(*described["size"])
         own_case.check_writable(case)
         if stages is not None:
             io.check_writable(stages)
         scene, params, *_ = read(**described)
-        step("rendering")
-        frame = displacement.render(scene, params, stages=stages is not None)
-        step("writing")
-        if stages is not None:
-            frame.save_stages(stages)
-        if depth_set is not None:
-            io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
-        frame.save(out, bits)
+        near, far = described["near"], described["far"]
+        shown, frame = pictures.draw(
+            wanted,
+            scene,
+            params,
+            lambda scene, **rows: displacement.render(scene, params, stages=stages is not None, **rows),
+            lambda camera: camera.fitted(
+                displacement.bounding_points(scene.polygons, camera, params), near=near, far=far
+            ),
+            step,
+        )
+        if frame is not None:
+            step("writing")
+            if stages is not None:
+                frame.save_stages(stages)
+            if depth_set is not None:
+                io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
+            frame.save(out, bits)
     own_case.write(case, scene, params)
-    emptiness.say(frame, lambda: displacement.culled(scene, params))
+    emptiness.say(shown, lambda: displacement.culled(scene, params))
 
 
 def goes_with() -> dict[str, Beside]:
@@ -274,13 +294,11 @@ def goes_with() -> dict[str, Beside]:
             "color",
             "invert_height",
             "height_scale",
-            "eye",
-            "target",
-            "fov",
             "near",
             "far",
         ),
-        **always("no_exif", "light", "size", "shadow_steps", "method", "stages"),
+        **always("fov", "no_exif", "light", "size", "shadow_steps", "method", "stages"),
+        **pictures.goes_with("eye", "target"),
         **{
             name: Beside("it says how --height is read", {"height": GIVEN})
             for name in ("height_format", "height_size", "height_order", "height_range", "nodata", "fill", "texel_size")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from contextlib import closing
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -18,7 +19,7 @@ Examples:
 
     ibr-ref draw all drawn --with wgsl --adapter vulkan
 
-    ibr-ref draw "displacement-*" drawn --with glsl --adapter softpipe
+    ibr-ref draw "displacement-*" drawn --with webgl
 
     ibr-ref draw cases drawn --with plain && ibr-ref check cases drawn
 """
@@ -29,6 +30,7 @@ class Port(StrEnum):
 
     glsl = "glsl"
     wgsl = "wgsl"
+    webgl = "webgl"
     plain = "plain"
 
 
@@ -44,12 +46,17 @@ def command(
         Path, typer.Argument(metavar="OUT", help="Made; of several cases a folder in it for each.", show_default=False)
     ],
     with_: Annotated[
-        Port, typer.Option("--with", help="OpenGL 4.5, WebGPU by wgpu, or NumPy in float32.", show_default=False)
+        Port,
+        typer.Option(
+            "--with",
+            help="OpenGL 4.5, WebGPU, WebGL 2 in a headless browser, or NumPy in float32.",
+            show_default=False,
+        ),
     ],
     adapter: Annotated[
         str | None,
         typer.Option(
-            help="glsl: a driver of Mesa, such as softpipe; wgsl: words of an adapter's name, such as vulkan.",
+            help="glsl: a driver of Mesa, such as zink; wgsl: words of an adapter's name, such as vulkan; webgl: a browser.",
             show_default=False,
         ),
     ] = None,
@@ -61,7 +68,7 @@ def command(
     choices, many = choice.chosen([case]), choice.is_many(case)
     drawer = SAMPLES[with_.value](adapter)
     refused = []
-    with progress(len(choices)) as step, tempfile.TemporaryDirectory() as made:
+    with closing(drawer), progress(len(choices)) as step, tempfile.TemporaryDirectory() as made:
         for each in choices:
             step(each.name)
             given = each.folder

@@ -12,9 +12,14 @@ if TYPE_CHECKING:
     from ibr_ref.shadows.culling import Cut
 
 
-def say(frame: Frame, culled: Callable[[], Culled]) -> None:
-    """Why a frame is empty, if it is."""
-    if (frame.depth < 1.0).any():
+def shows(frame: Frame) -> bool:
+    """Whether anything is there."""
+    return bool((frame.depth < 1.0).any())
+
+
+def say(shown: bool, culled: Callable[[], Culled]) -> None:
+    """Why a picture is empty, if nothing is shown."""
+    if shown:
         return
     found = culled()
     why = ", through which no line of sight meets the shape" if found.drawn else ""

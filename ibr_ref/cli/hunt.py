@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterable
+from contextlib import closing
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,11 +15,12 @@ import typer
 
 from ibr_ref import methods
 from ibr_ref.cli import options
+from ibr_ref.cli.tables import counted
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
-    from ibr_ref.testing import Bug, Found, Hunt, Program
+    from ibr_ref.testing import Bug, Drawer, Found, Hunt
 
 EXAMPLES = """
 Examples:
@@ -25,6 +28,10 @@ Examples:
     ibr-ref hunt --port "./my_port {case} {out}"
 
     ibr-ref hunt --port "./my_port {case} {out}" --method displacement --device vulkan --seconds 60 --out bugs
+
+    ibr-ref hunt --port ./my_port --serve
+
+    ibr-ref hunt --page
 
     ibr-ref check bugs/cases bugs/drawn
 
@@ -36,12 +43,25 @@ _STATE = "hunt.json"
 
 def command(
     port: Annotated[
-        str,
+        str | None,
         typer.Option(
             help="Command with {case} and {out}: the folder that it reads, as `ibr-ref export` writes it, and "
             "the one that it writes to."
         ),
-    ],
+    ] = None,
+    serve: Annotated[
+        bool,
+        typer.Option(
+            "--serve",
+            help='The command is started once, and told "CASE<tab>OUT" line by line; it answers "ok", or why not.',
+        ),
+    ] = False,
+    page: Annotated[
+        bool,
+        typer.Option(
+            "--page", help="The port is a page, of WebGL or WebGPU: print the address of a module that it imports."
+        ),
+    ] = False,
     method: Annotated[str | None, typer.Option(help=f"{' or '.join(methods.names())}. Without: all in turn.")] = None,
     seconds: Annotated[
         float,
@@ -65,15 +85,17 @@ def command(
 ) -> None:
     """Look for a port's bugs with random cases, and make the first failure of each as small as it gets.
 
-    A bug is the first wrong stage and the first of its arrays that disagrees. Found ones are skipped from then on.
+    A bug is the first wrong stage, the first of its arrays that disagrees, and where known bugs explain it, these. Found
+    ones are skipped from then on.
     """
-    program, wanted = _checked(port, method, seconds, device)
+    wanted = _checked(method, seconds, device)
     folder = _Folder(out)
     state = folder.state()
+    drawer = _drawer(port, serve, page)
     started, before = time.monotonic(), len(state.bugs)
-    from ibr_ref.testing import Hunt
+    from ibr_ref.testing import Hunt, port_of
 
-    with progress(1) as step:
+    with progress(1) as step, closing(drawer):
         step("hunting")
 
         def told(hunt: Hunt) -> None:
@@ -81,34 +103,46 @@ def command(
             step.within(f"{hunt.tried} cases, {len(hunt.known)} bugs", int(passed), int(seconds))
 
         hunt = Hunt(
-            port=program, methods=wanted, device=device, seed=seed, database=folder.place / "examples",
+            port=partial(port_of, drawer), methods=wanted, device=device, seed=seed, database=folder.place / "examples",
             known=set(state.bugs), rounds=state.rounds, told=told,
         )  # fmt: skip
-        lines = [_line(found, folder.keep(found, program, device)) for found in _kept(hunt, seconds, folder)]
-    for line in lines:
-        typer.echo(line)
+        for found in _kept(hunt, seconds, folder):
+            typer.echo(_line(found, folder.keep(found, drawer, device)))
+    new = len(hunt.known) - before
     typer.echo(
-        f"{hunt.tried} cases in {time.monotonic() - started:.0f} s (seed {seed}, rounds {state.rounds} to {hunt.rounds}): "
-        f"{len(hunt.known) - before} new bugs, {before} known from before."
+        f"{counted(hunt.tried, 'case')} in {time.monotonic() - started:.0f} s (seed {seed}, rounds {state.rounds} to "
+        f"{hunt.rounds}): {counted(new, 'new bug')}, {before} known from before."
     )
     raise typer.Exit(1 if hunt.known else 0)
 
 
-def _checked(port: str, method: str | None, seconds: float, device: str | None) -> tuple[Program, tuple[str, ...]]:
-    """The port and the methods. Raises ValueError for what cannot be used, and where Hypothesis is missing."""
+def _checked(method: str | None, seconds: float, device: str | None) -> tuple[str, ...]:
+    """The methods. Raises ValueError for what cannot be used, and where Hypothesis is missing."""
     try:
         import hypothesis  # noqa: F401
     except ImportError:
         raise ValueError('hunt needs Hypothesis, which is not installed: pip install "ibr_ref[hypothesis]"') from None
     from ibr_ref.scene import checks
-    from ibr_ref.testing import Program
 
     if method is not None:
         checks.choice("method", method, methods.names())
     if device is not None:
         checks.choice("device", device, tuple(PROFILES))
     checks.number("seconds", seconds, above=0.0)
-    return Program(port), methods.names() if method is None else (method,)
+    return methods.names() if method is None else (method,)
+
+
+def _drawer(port: str | None, serve: bool, page: bool) -> Drawer:
+    """The port, which may have to be opened first: where is printed. Raises ValueError for what is none."""
+    from ibr_ref.testing import Door, Program, Served
+
+    if page:
+        door = Door()
+        typer.echo(f"{door.address}port.js")
+        return door
+    if port is None:
+        raise typer.BadParameter("found no port, allowed: --port COMMAND, or --page")
+    return Served(port) if serve else Program(port)
 
 
 def _kept(hunt: Hunt, seconds: float, folder: _Folder) -> Iterable[Found]:
@@ -151,7 +185,10 @@ class _Folder:
             return _State()
         try:
             fields: dict[str, Any] = json.loads(path.read_bytes())
-            bugs = tuple(Bug(*(str(bug[name]) for name in Bug._fields)) for bug in fields["bugs"])
+            bugs = tuple(
+                Bug(str(bug["method"]), str(bug["stage"]), str(bug["array"]), tuple(map(str, bug["causes"])))
+                for bug in fields["bugs"]
+            )
             return _State(bugs, int(fields["rounds"]))
         except (ValueError, KeyError, TypeError):
             raise ValueError(f"{checks.named(path)}: found what no hunt wrote, allowed: a hunt's {_STATE}") from None
@@ -165,7 +202,7 @@ class _Folder:
         with atomic(self.place / _STATE) as file:
             file.write(text.encode() + b"\n")
 
-    def keep(self, found: Found, program: Program, device: str | None) -> str:
+    def keep(self, found: Found, drawer: Drawer, device: str | None) -> str:
         """Write case, drawing and report; the first line of the verdict."""
         from ibr_ref import oracle
         from ibr_ref.io.outputs import make_folder
@@ -177,7 +214,7 @@ class _Folder:
         folder, drawn = self.place / "cases" / name, make_folder(self.place / "drawn" / name)
         oracle.export(case, folder, force=True)
         try:
-            program.draw(folder.resolve(), drawn.resolve())
+            drawer.draw(folder.resolve(), drawn.resolve())
         except PortError as error:
             return f"{name}: {error}"
         submission = oracle.load_submission(drawn, case)
@@ -190,5 +227,6 @@ class _Folder:
 
 
 def _line(found: Found, verdict: str) -> str:
-    camera = found.case.scene.camera
-    return f"{verdict} {camera.width} x {camera.height} pixels, after {found.after} cases."
+    camera, causes = found.case.scene.camera, found.bug.causes
+    why = f" Explained by {' or '.join(causes)}." if causes else ""
+    return f"{verdict}{why} {camera.width} x {camera.height} pixels, after {counted(found.after, 'case')}."

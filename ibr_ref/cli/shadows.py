@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import depth_set_options, emptiness, options, own_case, shadows_several, shadows_stage
+from ibr_ref.cli import (
+    depth_set_options,
+    emptiness,
+    options,
+    own_case,
+    pictures,
+    shadows_drawing,
+    shadows_several,
+    shadows_stage,
+)
 from ibr_ref.cli.command import given
 from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
@@ -18,8 +27,7 @@ from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
-    from ibr_ref.io import Frame
-    from ibr_ref.shadows import Maps, Params, Scene, SoftParams
+    from ibr_ref.shadows import Maps, Params, Scene
 
 EXAMPLES = """
 Examples:
@@ -194,6 +202,10 @@ def command(
             "--report", help="Print how far the shadow is from the rendered or traced one, and the maps' memory."
         ),
     ] = False,
+    path: pictures.CameraPath = None,
+    frames: pictures.Frames = 120,
+    video: pictures.Video = None,
+    fps: pictures.Fps = 30.0,
     depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
@@ -201,11 +213,13 @@ def command(
     **described: Any,
 ) -> None:
     """Shadows by image warping (Kang & Ihm 2002) of meshes that move over a floor with steps, under one light or several."""
+    whole = {"stages": stages, "report": report, "depth_set": depth_set}
+    wanted = pictures.Wanted(out=out, bits=bits, path=path, frames=frames, video=video, fps=fps, fov=40.0, whole=whole)
     with progress(3) as step:
         step("reading the mesh, preparing maps")
         from ibr_ref import io, shadows
 
-        io.check_image_writable(out, bits)
+        wanted.check(*described["size"])
         own_case.check_writable(case)
         if stages is not None:
             io.check_writable(stages)
@@ -213,54 +227,35 @@ def command(
         several, soft = isinstance(scene, shadows.Ensemble), isinstance(params, shadows.SoftParams)
         if several:
             shadows_several.check_goes_with(scene, {f"--case {case}": case})
-        draw = shadows_several.drawn if several else _soft_frame if soft else _frame
-        step("rendering")
-        frame, lines = draw(scene, params, inputs.get("maps"), stages is not None, report)
-        step("writing")
-        if stages is not None:
-            frame.save_stages(stages)
-        if depth_set is not None:
-            io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
-        frame.save(out, bits)
-    if several and inputs:
-        shadows_several.say_poor(scene, inputs["maps"])
-    elif inputs:
-        poor = _poor(inputs["maps"])
-        if poor:
-            typer.echo(poor, err=True)
-    for line in lines:
+            drawing = shadows_several.drawing(scene, params, inputs.get("maps"))
+        elif soft:
+            drawing = shadows_drawing.soft(scene, params, wanted.in_bands)
+        else:
+            drawing = shadows_drawing.one(scene, params, inputs.get("maps"))
+        keep, near, far = report or stages is not None, described["near"], described["far"]
+        shown, frame = pictures.draw(
+            wanted,
+            scene,
+            params,
+            lambda scene, **rows: drawing.render(scene, keep, **rows),
+            lambda camera: shadows_stage.fitted(scene, camera, near, far),
+            step,
+        )
+        if frame is not None:
+            step("writing")
+            if stages is not None:
+                frame.save_stages(stages)
+            if depth_set is not None:
+                io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
+            frame.save(out, bits)
+    for line in drawing.report(frame) if frame is not None and report else []:
         typer.echo(line)
-    emptiness.say(frame, lambda: shadows.culled(scene))
+    emptiness.say(shown, lambda: shadows.culled(scene))
     if several:
         shadows_several.say_cut(scene, params)
     elif not soft:
         own_case.write(case, scene, params, **inputs)
         emptiness.say_cut(shadows.cut_by_light(scene, params))
-
-
-def _frame(scene: Scene, params: Params, maps: Maps | None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
-    """The frame, and what is reported of it."""
-    from ibr_ref import shadows
-    from ibr_ref.cli.shadows_report import report_lines
-
-    frame = shadows.render(scene, params, maps=maps, stages=keep or report)
-    return frame, report_lines(scene, params, frame, maps) if report else []
-
-
-def _poor(maps: Maps) -> str | None:
-    """A line for standard error."""
-    from ibr_ref.cli.shadows_report import poor_line
-
-    return poor_line(maps)
-
-
-def _soft_frame(scene: Scene, params: SoftParams, maps: None, keep: bool, report: bool) -> tuple[Frame, list[str]]:
-    """The frame, and what is reported of it."""
-    from ibr_ref import shadows
-    from ibr_ref.cli.shadows_report import soft_report_line
-
-    frame = shadows.render_soft(scene, params, stages=keep or report)
-    return frame, [soft_report_line(scene, frame)] if report else []
 
 
 def _kept(path: Path) -> bool:
@@ -308,8 +303,9 @@ def goes_with() -> dict[str, Beside]:
         return Beside(f"others do not read {name}", {"method": READ_BY[name]})
 
     return {
-        **always("out", "bits", "caster", "offset", "light", "light_target", "light_power", "method", "eye"),
-        **always("target", "near", "far", "size", "report", "stages", "depth_set"),
+        **pictures.goes_with("eye", "target"),
+        **always("out", "bits", "caster", "offset", "light", "light_target", "light_power", "method"),
+        **always("near", "far", "size", "report", "stages", "depth_set"),
         "case": Beside(own_case.WHY, {"method": named("shadows").judged[1]}),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": METHODS}),

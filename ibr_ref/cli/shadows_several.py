@@ -1,4 +1,4 @@
-"""`ibr-ref render shadows` with several casters or lights: the frame, what is reported of it, and what is refused."""
+"""`ibr-ref render shadows` with several casters or lights: how they are drawn, what is reported, and what is refused."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import typer
 from ibr_ref.metrics import iou, soft_difference
 
 if TYPE_CHECKING:
+    from ibr_ref.cli.shadows_drawing import Drawing
     from ibr_ref.io import Frame
     from ibr_ref.shadows import Ensemble, Maps, Params
 
@@ -31,14 +32,17 @@ def check_goes_with(ensemble: Ensemble, given: Mapping[str, object]) -> None:
         raise typer.BadParameter(f"{what}: found beside {counts}, allowed: {allowed} ({WHY[what.split()[0]]})")
 
 
-def drawn(
-    ensemble: Ensemble, params: Params, maps: list[list[Maps]] | None, keep: bool, report: bool
-) -> tuple[Frame, list[str]]:
-    """The frame, and what is reported of it."""
+def drawing(ensemble: Ensemble, params: Params, maps: list[list[Maps]] | None) -> Drawing:
+    """All casters under all lights; where no good maps were found standard error says so."""
     from ibr_ref import shadows
+    from ibr_ref.cli.shadows_drawing import Drawing
 
-    frame = shadows.render_ensemble(ensemble, params, maps=maps, stages=keep or report)
-    return frame, _report_lines(ensemble, params, frame, maps) if report else []
+    if maps is not None:
+        _say_poor(ensemble, maps)
+    return Drawing(
+        render=lambda scene, keep, **rows: shadows.render_ensemble(scene, params, maps=maps, stages=keep, **rows),
+        report=lambda frame: _report_lines(ensemble, params, frame, maps),
+    )
 
 
 def say_cut(ensemble: Ensemble, params: Params) -> None:
@@ -50,8 +54,7 @@ def say_cut(ensemble: Ensemble, params: Params) -> None:
         emptiness.say_cut(shadows.cut_by_light(ensemble.scene(*pair), params), ensemble.name_of(*pair))
 
 
-def say_poor(ensemble: Ensemble, maps: list[list[Maps]]) -> None:
-    """Where no good maps were found standard error says so."""
+def _say_poor(ensemble: Ensemble, maps: list[list[Maps]]) -> None:
     from ibr_ref.cli.shadows_report import poor_line
 
     for caster, light in ensemble.pairs:

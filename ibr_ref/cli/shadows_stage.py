@@ -12,7 +12,7 @@ from ibr_ref.cli import options
 
 if TYPE_CHECKING:
     from ibr_ref.models import StageLight
-    from ibr_ref.scene import Mesh
+    from ibr_ref.scene import Camera, Mesh
     from ibr_ref.shadows import Ensemble
 
 Value = TypeVar("Value")
@@ -118,6 +118,17 @@ def stage_lights(
         strict=True,
     )
     return [StageLight(position=place, target=target, size=size, power=power) for place, target, size, power in rows]
+
+
+def fitted(ensemble: Ensemble, camera: Camera, near: float | None, far: float | None) -> Camera:
+    """The camera with planes around all that is there, or where they are given."""
+    import numpy as np
+
+    from ibr_ref.models.stage_light import corners
+
+    bounds = [mesh.bounds for mesh in ensemble.receivers]
+    bounds += [mesh.bounds + offset @ axes for mesh, axes, offset in ensemble.movers]
+    return camera.fitted(corners(np.concatenate(bounds)), near=near, far=far)
 
 
 def _for_each(flag: str, found: list[Value], count: int, of: str) -> list[Value]:

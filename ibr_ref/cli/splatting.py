@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ibr_ref.cli import depth_set_options, emptiness, options, own_case, splatting_sources
+from ibr_ref.cli import depth_set_options, emptiness, options, own_case, pictures, splatting_sources
 from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 from ibr_ref.methods import named
@@ -29,6 +29,8 @@ Examples:
     ibr-ref render splatting --rgbd scene --cameras all --eye 3,-2,1 --target 0,0,0 --point-cloud scene.ply --out view.png
 
     ibr-ref render splatting --mesh cow.obj --count 9 --light=-1,-1,2 --out cow.png
+
+    ibr-ref render splatting --mesh cow.obj --path path.json --frames 120 --video film.mp4 --out film.png
 
     ibr-ref render splatting --mesh cow.obj --shape ellipse --out smooth.png
 
@@ -154,9 +156,14 @@ def read(
             parser=options.vector, metavar="X,Y,Z", help="Relight, from this direction. Without: the stored colours."
         ),
     ] = None,
+    *,
+    path: Path | None = None,
 ) -> Described:
-    """What the options describe. Raises ValueError and OSError for references and numbers that make no scene."""
-    splatting_sources.check(msr, rgbd, simple_texture, mesh, cameras, view, pose, eye)
+    """What the options describe; path: of cameras, beside which no view is needed.
+
+    Raises ValueError and OSError for references and numbers that make no scene.
+    """
+    splatting_sources.check(msr, rgbd, simple_texture, mesh, cameras, view, pose, eye, path)
     from ibr_ref import splatting
     from ibr_ref.scene import Light
 
@@ -211,6 +218,10 @@ def command(
     report: Annotated[
         bool, typer.Option("--report", help="Print coverage, holes, overdraw, and the difference to the photograph.")
     ] = False,
+    path: pictures.CameraPath = None,
+    frames: pictures.Frames = 120,
+    video: pictures.Video = None,
+    fps: pictures.Fps = 30.0,
     depth_set: depth_set_options.DepthSet = None,
     point_cloud: depth_set_options.PointCloud = None,
     bits: options.Bits = 8,
@@ -219,30 +230,42 @@ def command(
     **described: Any,
 ) -> None:
     """Splatting of reference images with depth (Lee & Park 2006) from a new view: of photographs, files, or a mesh."""
+    whole = {"stages": stages, "report": report}
+    wanted = pictures.Wanted(
+        out=out, bits=bits, path=path, frames=frames, video=video, fps=fps, fov=described["fov"], whole=whole
+    )
     with progress(3) as step:
         step("reading references")
         from ibr_ref import io, splatting
 
-        io.check_image_writable(out, bits)
+        wanted.check(*described["size"])
         own_case.check_writable(case)
-        for path in (stages, point_cloud):
-            if path is not None:
-                io.check_writable(path)
-        scene, params, _, read_photograph = read(**described)
+        for file in (stages, point_cloud):
+            if file is not None:
+                io.check_writable(file)
+        scene, params, _, read_photograph = read(**described, path=path)
         photograph = read_photograph() if report else None
         if depth_set is not None:
             io.write_depth_set(depth_set, scene.images, bits=bits)
         if point_cloud is not None:
             io.write_point_cloud(point_cloud, scene.images)
-        step("rendering")
-        picture = splatting.render(scene, params, stages=report or stages is not None)
-        step("writing")
-        if stages is not None:
-            picture.save_stages(stages)
-        picture.save(out, bits)
+        near, far = described["near"], described["far"]
+        shown, picture = pictures.draw(
+            wanted,
+            scene,
+            params,
+            lambda scene, **rows: splatting.render(scene, params, stages=report or stages is not None, **rows),
+            lambda camera: splatting_sources.fitted(scene.images, camera, near, far),
+            step,
+        )
+        if picture is not None:
+            step("writing")
+            if stages is not None:
+                picture.save_stages(stages)
+            picture.save(out, bits)
     own_case.write(case, scene, params)
-    emptiness.say(picture, lambda: splatting.culled(scene, params))
-    if report:
+    emptiness.say(shown, lambda: splatting.culled(scene, params))
+    if picture is not None and report:
         from ibr_ref.cli.splatting_report import report_lines
 
         typer.echo("\n".join(report_lines(scene, params, picture, photograph)))
@@ -301,9 +324,12 @@ def goes_with() -> dict[str, Beside]:
         **{
             name: Beside("reference images are made of a mesh", {"mesh": GIVEN}) for name in ("count", "reference_size")
         },
+        **pictures.goes_with(),
+        "path": Beside(seen, {"msr": ABSENT, "view": ABSENT, "pose": ABSENT}),
+        **{name: Beside(seen, {"msr": ABSENT, "view": ABSENT, "pose": ABSENT}) for name in ("size", "fov")},
         **{
-            name: Beside(seen, {"msr": ABSENT, "view": ABSENT, "pose": ABSENT})
-            for name in ("eye", "target", "up", "fov", "size")
+            name: Beside(seen, {"msr": ABSENT, "view": ABSENT, "pose": ABSENT, "path": ABSENT})
+            for name in ("eye", "target", "up")
         },
         "law": Beside("ellipses have no law, and a law is given or fitted", {"shape": READ_BY["alpha"], "fit": ABSENT}),
         "fit": Beside("ellipses have no law, and a law is given or fitted", {"shape": READ_BY["alpha"], "law": ABSENT}),

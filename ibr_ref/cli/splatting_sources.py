@@ -24,6 +24,7 @@ def check(
     view: options.View | None,
     pose: options.Numbers | None,
     eye: options.Vector | None,
+    path: Path | None,
 ) -> None:
     """Raise BadParameter for what no table of options can say: that something is missing."""
     if [msr, rgbd, simple_texture, mesh].count(None) != 3:
@@ -33,8 +34,8 @@ def check(
         raise typer.BadParameter(f"--msr needs --view: {which}")
     if msr is not None and not cameras:
         raise typer.BadParameter("--cameras: found all, allowed beside --msr: numbers of cameras, such as 0,1")
-    if rgbd is not None and view is None and pose is None and eye is None:
-        raise typer.BadParameter(f"--rgbd needs --view ({which}), --pose or --eye")
+    if rgbd is not None and view is None and pose is None and eye is None and path is None:
+        raise typer.BadParameter(f"--rgbd needs --view ({which}), --pose, --eye or --path")
 
 
 Photograph = Callable[[], "DepthImage | None"]
@@ -147,5 +148,13 @@ def view_of(
     radius = float(np.sqrt(((high - low) ** 2).sum())) / 2.0 or 1.0
     at = center + radius * np.array([1.3, -2.3, 1.1]) if eye is None else np.array(eye)
     camera = Camera.look_at(eye=at, target=center, up=up, vertical_fov=fov, width=size.width, height=size.height)
-    corners = [[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
+    return fitted(images, camera, near, far)
+
+
+def fitted(images: Sequence[DepthImage], camera: Camera, near: float | None, far: float | None) -> Camera:
+    """The camera with planes around all points, or where they are given."""
+    from ibr_ref import splatting
+
+    ends = splatting.bounds(images)
+    corners = [[ends[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
     return camera.fitted(corners, near=near, far=far)

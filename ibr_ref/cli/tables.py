@@ -12,6 +12,11 @@ _WIDEST = 100_000
 """Columns of a pipe: any table fits."""
 
 
+def counted(count: int, thing: str) -> str:
+    """As in 1 case, 2 cases."""
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+
+
 def show(table: Table, *, error: bool = False) -> None:
     """Print a table on standard output, or on standard error."""
     from rich.console import Console

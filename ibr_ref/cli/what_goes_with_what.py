@@ -57,13 +57,23 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
         },
         "export": _export,
         "check": _check,
-        "hunt": lambda: always("port", "method", "seconds", "seed", "out", "device"),
+        "hunt": _hunt,
         "draw": lambda: always("case", "folder", "with_", "adapter"),
         **{f"view {name}": partial(view.goes_with, name) for name in view.commands()},
+        "conformance": lambda: always("case", "with_", "adapter", "out"),
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),
         "reproduce": lambda: always("paper", "out", "again"),
+    }
+
+
+def _hunt() -> dict[str, Beside]:
+    return {
+        **always("method", "seconds", "seed", "out", "device"),
+        "port": Beside("there is one port", {"page": ABSENT}),
+        "serve": Beside("it says how a command is told", {"port": GIVEN}),
+        "page": Beside("there is one port", {"port": ABSENT}),
     }
 
 

@@ -27,11 +27,9 @@ def _picture(name: str, caption: str, scene: Scene, params: Params, hide: tuple[
     def draw() -> Any:
         import numpy as np
 
-        frame = displacement.render(scene, params, stages=bool(hide))
-        if not hide:
-            return frame.color
-        hidden = np.isin(frame.stages["raster.face"], hide)
-        return np.where(hidden[..., None], np.asarray(scene.background), frame.color)
+        color = displacement.render(scene, params, stages=False).color
+        hidden = np.isin(_faces(scene, params), hide) if hide else np.zeros(color.shape[:2], bool)
+        return np.where(hidden[..., None], np.asarray(scene.background), color)
 
     return Picture(
         name=name,
@@ -41,6 +39,26 @@ def _picture(name: str, caption: str, scene: Scene, params: Params, hide: tuple[
         settings="" if params.method == "texture" else f"{params.linear_steps} + {params.binary_steps} steps",
         paper_ms="40" if params.method == "protruded" and params.linear_steps == 50 else "",
     )
+
+
+def _faces(scene: Scene, params: Params) -> Any:
+    """(H, W) the face of the volume that each pixel is on, -1 none: the faces of one polygon share no pixel.
+
+    The stage raster.face says the same, but a frame with stages is another compilation of the largest kernel.
+    """
+    import numpy as np
+
+    from ibr_ref.displacement.patch_space import uniforms
+    from ibr_ref.displacement.vertex import vertex_stage
+    from ibr_ref.pipeline.clip import clip_triangles
+    from ibr_ref.pipeline.triangles import set_up
+    from ibr_ref.pipeline.visibility import visible
+
+    (polygon,), camera = scene.polygons, scene.camera
+    faces = vertex_stage(uniforms(polygon, camera, scene.light), params.drawn_faces, params.interval)
+    clipped = clip_triangles(faces.clip, faces.patch, faces.triangles, camera.width, camera.height)
+    seen = visible(set_up(clipped, camera.width, camera.height), camera.width, camera.height).triangle
+    return np.where(seen >= 0, faces.numbers[clipped.source[seen] // 2], -1)
 
 
 def _figure_6() -> list[Picture]:

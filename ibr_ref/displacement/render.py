@@ -19,16 +19,19 @@ from ibr_ref.displacement.textures import Map, Maps
 from ibr_ref.displacement.vertex import Faces, vertex_stage
 from ibr_ref.io import Frame
 from ibr_ref.pipeline.clip import clip_triangles
-from ibr_ref.pipeline.triangles import set_up
-from ibr_ref.scene import BasePolygon
+from ibr_ref.pipeline.triangles import set_up, shifted
+from ibr_ref.scene import BasePolygon, checks
 from ibr_ref.searches import SEARCHES
 
 
-def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -> Frame:
+def render(
+    scene: Scene, params: Params | None = None, *, stages: bool = True, rows: tuple[int, int] | None = None
+) -> Frame:
     """Render base polygons with their height maps.
 
     With `stages` the frame holds every intermediate array (`contract.STAGES` lists them); without, the same
-    picture and depth sooner. Raises ValueError for inputs that only together are not allowed.
+    picture and depth sooner. rows: first and one past the last row of the picture that are drawn, the same bits as in all
+    of it; None: all. Raises ValueError for inputs that only together are not allowed.
     """
     params = Params() if params is None else params
     inputs.check(scene, params)
@@ -37,12 +40,13 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
     for polygon_constants in constants:
         inputs.check_eye(params, polygon_constants.eye)
     faces = [vertex_stage(c, params.drawn_faces, params.interval) for c in constants]
-    target = target_for(camera.width * camera.height, stages)
+    first, stop = checks.rows(rows, camera.height)
+    target = target_for(camera.width * (stop - first), stages)
     background = np.array(scene.background, np.float64)
     fetches: list[NDArray[np.int32]] = []
     for patch_id, (polygon, quads) in enumerate(zip(scene.polygons, faces, strict=True)):
         clipped = clip_triangles(quads.clip, quads.patch, quads.triangles, camera.width, camera.height)
-        triangles = set_up(clipped, camera.width, camera.height)
+        triangles = shifted(set_up(clipped, camera.width, camera.height), first, stop)
         repeat = True if polygon.domain == "repeat" else None
         keep = True if stages else None
         settings = _settings(params, polygon)
@@ -50,14 +54,14 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
         room = SEARCHES[params.method].room
         if room is not None:
             hits, counts = compared.search(
-                room, params, polygon, maps.height, constants[patch_id], triangles, camera.width, camera.height
+                room, params, polygon, maps.height, constants[patch_id], triangles, camera.width, stop - first
             )  # fmt: skip
             fetches.append(counts)
         draw(
             repeat, keep, hits, triangles, quads.numbers, constants[patch_id], settings, *maps, patch_id,
-            camera.width, camera.height, background, target,
+            camera.width, stop - first, background, target,
         )  # fmt: skip
-    size = (camera.height, camera.width)
+    size = (stop - first, camera.width)
     return Frame(
         color=target.color.reshape(*size, 3),
         depth=target.depth.reshape(size),

@@ -10,13 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.io import exr, jpeg, png
+from ibr_ref.io.extras import needed
 from ibr_ref.io.files import contents, naming
 from ibr_ref.io.orientation import orientation, upright
 from ibr_ref.io.outputs import atomic, check_writable, is_stream
+from ibr_ref.io.posters import write_poster
+from ibr_ref.io.samples import checked, quantized
 from ibr_ref.scene.checks import named, one_line
 
 _CODECS = (png, jpeg)
-_FORMATS = {".png": ".png", ".jpg": ".jpg", ".jpeg": ".jpg", ".exr": ".exr"}
+_FORMATS = {".png": ".png", ".jpg": ".jpg", ".jpeg": ".jpg", ".exr": ".exr", ".tif": ".tif", ".tiff": ".tif"}
 _OPTIONS: dict[str, dict[str, int]] = {".png": {}, ".jpg": {"quality": 95, "subsampling": 0}}
 _MAX_JPEG_SIDE = 65535
 
@@ -59,17 +62,22 @@ def white(data: bytes) -> float:
 def write_image(path: str | PathLike[str], image: ArrayLike, bits: int = 8) -> None:
     """Write (H, W) grey or (H, W, 3) RGB.
 
-    The name's ending gives the format: .png, with `bits` 8 or 16, .jpg / .jpeg (8 bits, quality 95, chroma at full
-    resolution), both clamped to [0, 1], as floor(c (2^bits - 1) + 0.5); or .exr, 32-bit floats as they are, which needs the
-    extra `ibr_ref[io]`. The file is written beside its place and then renamed; a link is followed, a pipe or a character
-    device (as a PNG if its name has no ending) written to.
+    The name's ending gives the format: .png and .tif, with `bits` 8 or 16, .jpg / .jpeg (8 bits, quality 95, chroma at full
+    resolution), all clamped to [0, 1], as floor(c (2^bits - 1) + 0.5); or .exr, 32-bit floats as they are. EXR and TIFF
+    (RGB alone, tiled, as `write_poster` has it) need the extra `ibr_ref[io]`. The file is written beside its place and then
+    renamed; a link is followed, a pipe or a character device (as a PNG if its name has no ending) written to.
 
     Raises OSError or ValueError, with the path, for other endings, folders that cannot be written, other shapes, values
     that are not floats (or bools), and NaN.
     """
     kind = _kind(path, bits)
-    values = _checked(path, image)
-    samples = values if kind == ".exr" else _quantized(values, bits)
+    values = checked(path, image)
+    if kind == ".tif":
+        if values.ndim != 3:
+            raise ValueError(f"{named(path)}: found an image of shape {values.shape}, allowed in TIFF: (H, W, 3)")
+        write_poster(path, lambda rows: values[slice(*rows)], values.shape[1], values.shape[0], bits)
+        return
+    samples = values if kind == ".exr" else quantized(values, bits)
     if kind == ".jpg" and max(samples.shape) > _MAX_JPEG_SIDE:
         raise ValueError(
             f"{named(path)}: found an image of shape {samples.shape}, allowed in JPEG: {_MAX_JPEG_SIDE} each way"
@@ -81,7 +89,7 @@ def write_image(path: str | PathLike[str], image: ArrayLike, bits: int = 8) -> N
 
 def png_bytes(image: ArrayLike) -> bytes:
     """What `write_image` would write into a .png, in 8 bits. Raises ValueError as it does."""
-    return _encoded(_quantized(_checked("image", image), 8), ".png")
+    return _encoded(quantized(checked("image", image), 8), ".png")
 
 
 def check_image_writable(path: str | PathLike[str], bits: int = 8) -> None:
@@ -97,34 +105,14 @@ def _kind(path: str | PathLike[str], bits: int) -> str:
     if ending.lower() not in _FORMATS:
         raise ValueError(f"{named(path)}: found the ending {one_line(repr(ending))}, allowed: {', '.join(_FORMATS)}")
     kind = _FORMATS[ending.lower()]
-    if bits != 8 and (bits, kind) != (16, ".png"):
-        raise ValueError(f"{named(path)}: found bits = {one_line(repr(bits))}, allowed: 8, or 16 in PNG")
-    if kind == ".exr":
-        with naming(path):
+    if bits != 8 and (bits != 16 or kind not in (".png", ".tif")):
+        raise ValueError(f"{named(path)}: found bits = {one_line(repr(bits))}, allowed: 8, or 16 in PNG and TIFF")
+    with naming(path):
+        if kind == ".exr":
             exr.check_installed()
+        elif kind == ".tif":
+            needed("tifffile", "TIFF files")
     return kind
-
-
-def _checked(path: str | PathLike[str], image: ArrayLike) -> NDArray[Any]:
-    """The image as an array of floats or bools."""
-    values = np.asarray(image)
-    if values.ndim not in (2, 3) or (values.ndim == 3 and values.shape[2] != 3) or not values.size:
-        raise ValueError(
-            f"{named(path)}: found an image of shape {values.shape}, allowed: (H, W) or (H, W, 3), not empty"
-        )
-    if values.dtype.kind not in "fb":
-        # 0 to 255, most likely: clamped to [0, 1], it would be white all over.
-        raise ValueError(f"{named(path)}: found an image of {values.dtype}, allowed: floats in [0, 1]")
-    if np.isnan(values).any():
-        raise ValueError(f"{named(path)}: found NaN at {np.argwhere(np.isnan(values))[0].tolist()}, allowed: numbers")
-    return values
-
-
-def _quantized(values: NDArray[Any], bits: int) -> NDArray[np.unsignedinteger]:
-    """Conventions, Numbers: floor(255 c + 0.5) after clamping."""
-    levels = float(2**bits - 1)
-    steps = np.floor(np.clip(values.astype(np.float64), 0.0, 1.0) * levels + 0.5)
-    return steps.astype(np.uint8 if bits == 8 else np.uint16)
 
 
 def _encoded(samples: NDArray[Any], kind: str) -> bytes:

@@ -16,7 +16,7 @@ from ibr_ref.shadows import Caster, Ensemble, Scene
 REACH = 0.6
 """The caster's offset on either axis, in units of its largest extent, which is 1 on the stage."""
 
-EYE, TARGET = (1.4, -3.0, 2.1), (0.15, 0.35, -0.1)
+EYE, TARGET, FIELD_OF_VIEW = (1.4, -3.0, 2.1), (0.15, 0.35, -0.1), 40.0
 """Of the camera."""
 
 _FLOOR = -0.5
@@ -88,7 +88,7 @@ def shadow_ensemble(
     receivers = _receivers()
     above = np.array_equal(checks.vector("eye", eye)[:2], checks.vector("target", target)[:2])
     up = (0.0, 1.0, 0.0) if above else (0.0, 0.0, 1.0)
-    camera = Camera.look_at(eye=eye, target=target, up=up, vertical_fov=40.0, width=width, height=height)
+    camera = Camera.look_at(eye=eye, target=target, up=up, vertical_fov=FIELD_OF_VIEW, width=width, height=height)
     placed = [mesh.bounds + np.append(place, 0.0) for mesh, place in zip(meshes, places, strict=True)]
     around = corners(np.concatenate([*(mesh.bounds for mesh in receivers), *placed]))
     bounds = corners(np.concatenate([mesh.bounds for mesh in meshes]))

@@ -70,6 +70,9 @@ def examine(
     else:
         trial, tried = tightest(case, handed, declaration)
     judgements = trial.judgements
+    wrong = _first_wrong(judgements)
+    sought = [j for j in judgements if name_causes and j.wrong.any() and (j is wrong or j.stage != "image")]
+    explained = {j.stage: _explanation(case, trial.device, handed, j) for j in sought}
     fields: dict[str, Any] = {
         "case": case.name,
         "method": case.method,
@@ -77,14 +80,13 @@ def examine(
         "numbers": trial.device.numbers,
         "declared": declaration.profile is not None,
         "tried": tried,
-        "stages": tuple(_summary(case, trial.device, handed, j) for j in judgements),
+        "stages": tuple(_summary(case, trial.device, handed, j, explained.get(j.stage)) for j in judgements),
     }
     image = next((j for j in judgements if j.stage == "image"), None)
     if image is not None:
         # Of what is drawn: a background is decided anywhere, and its width is none.
         fields["undecided_share"] = share_of_drawn(case, image)
         fields["median_width"] = _median(image.width[drawn(case, image)])
-    wrong = _first_wrong(judgements)
     found: tuple[Bias, ...] = ()
     if image is not None:
         found = biases(case, handed, image, trial.device, wrong=wrong is not None)
@@ -96,7 +98,7 @@ def examine(
     if wrong is not None:
         fields["first_wrong_stage"] = wrong.stage
         fields["needs"] = needed(case, handed, trial)
-        explanation = _explanation(case, trial.device, handed, wrong) if name_causes else None
+        explanation = explained.get(wrong.stage)
         if explanation is not None:
             fields |= {"causes": explanation.causes, "suspects": explanation.given_up_after}
         if image is not None and image.wrong.any():
@@ -124,7 +126,9 @@ def _median(widths: NDArray[np.float64]) -> float | None:
     return float(np.median(widths)) if widths.size else None
 
 
-def _summary(case: Case, device: Device, handed: Handed, judgement: Judgement) -> StageVerdict:
+def _summary(
+    case: Case, device: Device, handed: Handed, judgement: Judgement, explanation: Explanation | None
+) -> StageVerdict:
     wrong = np.argwhere(judgement.wrong)
     box = None
     if judgement.places is not None:
@@ -144,6 +148,7 @@ def _summary(case: Case, device: Device, handed: Handed, judgement: Judgement) -
         blamed={name: int(count) for name, count in zip(judgement.arrays, counts, strict=False) if count},
         median_width=_median(judgement.width),
         witness=_witness(case, device, handed, judgement) if len(wrong) else None,
+        causes=None if explanation is None else explanation.causes,
     )
 
 

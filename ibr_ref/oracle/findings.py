@@ -60,6 +60,14 @@ class Witness(_Record):
     trace: tuple[TraceStep, ...]
 
 
+class Cause(_Record):
+    """A known bug whose program leaves nothing of what was handed in unexplained."""
+
+    name: str
+    says: str
+    """What such a port does, in a sentence."""
+
+
 class StageVerdict(_Record):
     """One stage, judged on the port's own inputs where it handed them in; "image" is the picture, judged from the case."""
 
@@ -80,6 +88,8 @@ class StageVerdict(_Record):
     """Of the accepted sets of continuous results."""
     witness: Witness | None = None
     """Of a wrong stage."""
+    causes: tuple[Cause, ...] | None = None
+    """Known bugs that explain a wrong stage; None where none was looked for."""
 
     @property
     def right(self) -> bool:
@@ -94,14 +104,6 @@ class Convention(_Record):
     wrong: int
     explains: bool
     """No pixel is left, or fewer than a tenth."""
-
-
-class Cause(_Record):
-    """A known bug whose program leaves nothing of what was handed in unexplained."""
-
-    name: str
-    says: str
-    """What such a port does, in a sentence."""
 
 
 class Bias(_Record):

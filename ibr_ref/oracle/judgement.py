@@ -155,3 +155,11 @@ class Explains(Protocol):
 
     def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
         """The known bugs that explain a wrong stage; None: not looked for."""
+
+
+@runtime_checkable
+class Recognizes(Protocol):
+    """A judge that tells a bug that it has named before from others, much sooner than it names one."""
+
+    def recognizes(self, case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
+        """Whether the known bug of that name explains a wrong stage."""

@@ -74,16 +74,18 @@ def _stage_line(stage: StageVerdict, *, alone: bool) -> str:
     name = stage.stage if alone else f"{stage.stage} ({', '.join(stage.arrays)})"
     own = f", fed with the port's {', '.join(stage.replayed)}" if stage.replayed else ""
     if stage.right:
-        return f"  {name}: right ({stage.elements:,} {_plural(stage.element)}{own})."
+        return f"  {name}: right ({_counted(stage.elements, stage.element)}{own})."
     box = stage.box
     where = "" if box is None else f", from {list(box.first)} to {list(box.last)}"
     blamed = ", ".join(f"{name} in {count:,}" for name, count in stage.blamed.items())
     share = 100 * stage.wrong / stage.elements
-    return f"  {name}: {stage.wrong:,} {_plural(stage.element)} wrong ({share:.3g} %){where}: {blamed}{own}."
+    return f"  {name}: {_counted(stage.wrong, stage.element)} wrong ({share:.3g} %){where}: {blamed}{own}."
 
 
-def _plural(element: str) -> str:
-    return {"vertex": "vertices", "axis": "axes"}.get(element, f"{element}s")
+def _counted(count: int, element: str) -> str:
+    """As in 1 pixel, 12 vertices."""
+    several = {"vertex": "vertices", "axis": "axes"}.get(element, f"{element}s")
+    return f"{count:,} {element if count == 1 else several}"
 
 
 def _witness_line(witness: Witness, *, first: bool) -> str:

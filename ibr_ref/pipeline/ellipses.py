@@ -66,15 +66,18 @@ class Blend(NamedTuple):
     """(H, W) or (0, W): second-smallest window depth of those; infinite with fewer than two."""
     blended: NDArray[np.int32]
     """(H, W) or (0, W): those whose weights are summed."""
+    top: int
+    """The row of the picture that the buffers begin with."""
 
 
-def blend_for(width: int, height: int, keep: bool) -> Blend:
-    """Cleared buffers; with `keep` those of the stages too."""
+def blend_for(width: int, height: int, keep: bool, top: int = 0) -> Blend:
+    """Cleared buffers for `height` rows of a picture from `top` on; with `keep` those of the stages too."""
     picture, noted = (height, width), (height if keep else 0, width)
-    blend = Blend(
-        *arrays([(np.int32, picture), *[(np.float64, picture)] * 3, (np.float64, (*picture, 3))]),
-        *arrays([(np.int32, noted), (np.float64, noted), (np.int32, noted)]),
+    splat, depth, distance, weight, color = arrays(
+        [(np.int32, picture), *[(np.float64, picture)] * 3, (np.float64, (*picture, 3))]
     )
+    overdraw, second, blended = arrays([(np.int32, noted), (np.float64, noted), (np.int32, noted)])
+    blend = Blend(splat, depth, distance, weight, color, overdraw, second, blended, top)
     for name, value in {"splat": -1, "depth": 1.0, "distance": -np.inf, "second": np.inf}.items():
         getattr(blend, name).fill(value)
     for name in ("weight", "color", "overdraw", "blended"):
@@ -129,7 +132,7 @@ def _nearest_band(ellipses, spans, members, cutoff, first_row, base, target):
         determinant = xx * yy - xy * xy
         for row in range(max(spans.top[i], first_row), min(spans.stop[i], last_row)):
             for column in range(spans.left[i], spans.right[i]):
-                if squared_radius(column + 0.5 - x, row + 0.5 - y, xx, xy, yy, determinant) <= most:
+                if squared_radius(column + 0.5 - x, row + target.top + 0.5 - y, xx, xy, yy, determinant) <= most:
                     if len(target.overdraw) > 0:
                         _note(row, column, z, target)
                     _test(row, column, z, ellipses.distance[i], np.int32(base + i), target)
@@ -164,7 +167,7 @@ def _add_band(ellipses, colors, spans, members, cutoff, tolerance, first_row, ta
         determinant = xx * yy - xy * xy
         for row in range(max(spans.top[i], first_row), min(spans.stop[i], last_row)):
             for column in range(spans.left[i], spans.right[i]):
-                q = squared_radius(column + 0.5 - x, row + 0.5 - y, xx, xy, yy, determinant)
+                q = squared_radius(column + 0.5 - x, row + target.top + 0.5 - y, xx, xy, yy, determinant)
                 if q <= most and distance <= reach * target.distance[row, column]:
                     _add(row, column, ellipses.amplitude[i] * gaussian(q), colors, i, target)
 
@@ -192,7 +195,7 @@ def accumulate(ellipses: Ellipses, colors: Floats, cutoff: float, tolerance: flo
 def _shares(ellipses: Ellipses, cutoff: float, target: Blend) -> Shares:
     rows, columns = target.splat.shape
     width, height = 2.0 * cutoff * np.sqrt(ellipses.xx), 2.0 * cutoff * np.sqrt(ellipses.yy)
-    return share_out(ellipses.x, ellipses.y, width, height, columns, rows)
+    return share_out(ellipses.x, ellipses.y, width, height, columns, rows, target.top)
 
 
 @device

@@ -33,7 +33,10 @@ def _new(size: int) -> Any:
     """Memory that the system has to give: an object with a writable buffer."""
     if not hasattr(mmap, "MADV_HUGEPAGE"):
         return np.empty(size, np.uint8)
-    block = mmap.mmap(-1, size, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+    try:
+        block = mmap.mmap(-1, size, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+    except OSError:
+        raise MemoryError(f"{size / 2**30:.1f} GiB are needed for the arrays of a frame, more than there is") from None
     with suppress(OSError):  # a system built without large pages
         block.madvise(mmap.MADV_HUGEPAGE)
     return block

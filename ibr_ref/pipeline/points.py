@@ -62,14 +62,16 @@ class Target(NamedTuple):
     """(H, W) or (0, W): all splats that cover the pixel."""
     second: NDArray[np.float64]
     """(H, W) or (0, W): second-smallest depth of those; infinite with fewer than two."""
+    top: int
+    """The row of the picture that the buffers begin with."""
 
 
-def target_for(width: int, height: int, keep: bool) -> Target:
-    """Cleared buffers; with `keep` those of the stages too."""
+def target_for(width: int, height: int, keep: bool, top: int = 0) -> Target:
+    """Cleared buffers for `height` rows of a picture from `top` on; with `keep` those of the stages too."""
     picture, noted = (height, width), (height if keep else 0, width)
-    target = Target(
-        *arrays([(np.int32, picture), (np.float64, picture)]), *arrays([(np.int32, noted), (np.float64, noted)])
-    )
+    splat, depth = arrays([(np.int32, picture), (np.float64, picture)])
+    overdraw, second = arrays([(np.int32, noted), (np.float64, noted)])
+    target = Target(splat, depth, overdraw, second, top)
     target.splat.fill(-1)
     target.depth.fill(1.0)
     target.overdraw.fill(0)
@@ -84,21 +86,21 @@ def snapped(x):
 
 
 @device
-def span(center, width, size):
-    """The pixels [first, stop) of an axis of `size` pixels whose centres lie in [center - width/2, center + width/2).
+def span(center, width, begin, size):
+    """The pixels [first, stop) whose centres lie in [center - width/2, center + width/2), counted from `begin`.
 
-    Clamped as floats, as int(nan) is INT_MIN; NaN covers nothing.
+    Of `size` pixels from there on. Clamped as floats, as int(nan) is INT_MIN; NaN covers nothing.
     """
-    first = np.ceil(center - width / 2.0 - 0.5)
-    stop = np.ceil(center + width / 2.0 - 0.5)
+    first = np.ceil(center - width / 2.0 - 0.5) - begin
+    stop = np.ceil(center + width / 2.0 - 0.5) - begin
     return np.int32(clamped(first, 0.0, size)), np.int32(clamped(stop, 0.0, size))
 
 
 @device
-def _fill_spans(center, width, size, low, high):
+def _fill_spans(center, width, begin, size, low, high):
     """What splats cover along one axis; whole arrays, few of them and no branches, so that LLVM turns it into SIMD."""
     for i in range(len(center)):
-        low[i], high[i] = span(snapped(center[i]), width[i], size)
+        low[i], high[i] = span(snapped(center[i]), width[i], begin, size)
 
 
 @device
@@ -110,9 +112,9 @@ def _bands(left, right, top, stop):
 
 
 @device
-def _set_up_part(x, y, width, height, columns, rows, left, right, top, stop, counts):
-    _fill_spans(x, width, columns, left, right)
-    _fill_spans(y, height, rows, top, stop)
+def _set_up_part(x, y, width, height, begin, columns, rows, left, right, top, stop, counts):
+    _fill_spans(x, width, 0.0, columns, left, right)
+    _fill_spans(y, height, begin, rows, top, stop)
     for i in range(len(x)):
         band, end = _bands(left[i], right[i], top[i], stop[i])
         while band < end:
@@ -121,7 +123,7 @@ def _set_up_part(x, y, width, height, columns, rows, left, right, top, stop, cou
 
 
 @kernel
-def _set_up(x, y, width, height, columns, rows, spans, counts):
+def _set_up(x, y, width, height, begin, columns, rows, spans, counts):
     """What each splat covers, and how many of each part of the list each band has a share in: counts (parts, bands)."""
     left, right, top, stop = spans
     parts = len(counts)
@@ -129,7 +131,7 @@ def _set_up(x, y, width, height, columns, rows, spans, counts):
     for part in prange(parts):
         first, last = min(len(width), part * chunk), min(len(width), (part + 1) * chunk)
         _set_up_part(
-            x[first:last], y[first:last], width[first:last], height[first:last], columns, rows,
+            x[first:last], y[first:last], width[first:last], height[first:last], begin, columns, rows,
             left[first:last], right[first:last], top[first:last], stop[first:last], counts[part],
         )  # fmt: skip
 
@@ -196,19 +198,19 @@ def covers(disc, column, row, x, y, width):
 
 
 @device
-def _draw_discs(splats, spans, members, first_row, last_row, base, splat, depth):
+def _draw_discs(splats, spans, members, first_row, last_row, base, begin, splat, depth):
     """Draw the discs of a band, in order, into its rows [first_row, last_row)."""
     xs, ys, depths, widths = splats
     for i in members:
         x, y, width, z = snapped(xs[i]), snapped(ys[i]), widths[i], depths[i]
         for row in range(max(spans.top[i], first_row), min(spans.stop[i], last_row)):
             for column in range(spans.left[i], spans.right[i]):
-                if covers(True, column, row, x, y, width):
+                if covers(True, column, row + begin, x, y, width):
                     _test(row, column, z, np.int32(base + i), splat, depth)
 
 
 @device
-def _note_band(splats, spans, members, disc, first_row, last_row, depth, overdraw, second):
+def _note_band(splats, spans, members, disc, first_row, last_row, begin, depth, overdraw, second):
     """Before a band is drawn, note for the stages how many of its members cover each pixel, and the second-nearest of all.
 
     `depth` holds the nearest so far, a copy of the buffer's rows.
@@ -218,7 +220,7 @@ def _note_band(splats, spans, members, disc, first_row, last_row, depth, overdra
         x, y, width, z = snapped(xs[i]), snapped(ys[i]), widths[i], depths[i]
         for row in range(max(spans.top[i], first_row), min(spans.stop[i], last_row)):
             for column in range(spans.left[i], spans.right[i]):
-                if covers(disc, column, row, x, y, width):
+                if covers(disc, column, row + begin, x, y, width):
                     nearest = depth[row - first_row, column]
                     if overdraw[row, column] > 0:
                         second[row, column] = min(second[row, column], max(z, nearest))
@@ -231,9 +233,11 @@ def _draw_band(splats, spans, members, disc, first_row, base, target):
     last_row = min(target.splat.shape[0], first_row + BAND_ROWS)
     if len(target.overdraw) > 0:
         nearest = target.depth[first_row:last_row].copy()
-        _note_band(splats, spans, members, disc, first_row, last_row, nearest, target.overdraw, target.second)
+        _note_band(
+            splats, spans, members, disc, first_row, last_row, target.top, nearest, target.overdraw, target.second
+        )
     if disc:
-        _draw_discs(splats, spans, members, first_row, last_row, base, target.splat, target.depth)
+        _draw_discs(splats, spans, members, first_row, last_row, base, target.top, target.splat, target.depth)
     else:
         _draw_squares(spans, splats.depth, members, first_row, last_row, base, target.splat, target.depth)
 
@@ -265,12 +269,16 @@ def share_out(
     height: NDArray[np.float64],
     columns: int,
     rows: int,
+    begin: int,
 ) -> Shares:
-    """Sort boxes (N,) around window positions, which are snapped, into the bands of a picture of columns x rows pixels."""
+    """Sort boxes (N,) around window positions, which are snapped, into the bands of columns x rows pixels.
+
+    begin: the row of the picture that the first of these is; spans are counted from it.
+    """
     bands = -(-rows // BAND_ROWS)
     spans = Spans(*arrays([(np.int32, (len(x),))] * 4))
     counts = np.zeros((_PARTS, bands), np.int64)
-    _set_up(x, y, width, height, float(columns), float(rows), spans, counts)
+    _set_up(x, y, width, height, float(begin), float(columns), float(rows), spans, counts)
     ends = np.cumsum(counts.T).reshape(bands, _PARTS).T  # band by band, in each the parts in order
     starts = np.append(ends[0] - counts[0], ends[-1, -1])
     (members,) = arrays([(np.int32, (int(starts[-1]),))])
@@ -281,5 +289,5 @@ def share_out(
 def draw_splats(splats: Splats, disc: bool, base: int, target: Target) -> None:
     """Draw splats into `target`, over what has been drawn before; the first of them has the index `base` there."""
     rows, columns = target.splat.shape
-    spans, members, starts = share_out(splats.x, splats.y, splats.width, splats.width, columns, rows)
+    spans, members, starts = share_out(splats.x, splats.y, splats.width, splats.width, columns, rows, target.top)
     _draw(splats, spans, members, starts, disc, base, target)

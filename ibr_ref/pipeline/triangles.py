@@ -96,6 +96,15 @@ def set_up(clipped: ClippedTriangles, width: int, height: int) -> Triangles:
     return Triangles(x, y, z, w, clipped.varyings, clipped.source, rows)
 
 
+def shifted(triangles: Triangles, first: int, stop: int) -> Triangles:
+    """The same triangles for the rows [first, stop) of the picture alone, counted from `first`.
+
+    Whole pixels change no edge function at a pixel's centre: what is drawn has the bits of the whole picture.
+    """
+    rows = np.clip(triangles.rows, first, stop) - first
+    return triangles._replace(y=triangles.y - first * SUBPIXELS, rows=np.ascontiguousarray(rows))
+
+
 @device
 def _edge(ax, ay, bx, by, sign, py):
     """Edge a -> b at column 0 of the row of centres py: value, step a column, least value that is inside."""

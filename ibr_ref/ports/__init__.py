@@ -1,5 +1,6 @@
 """Sample ports: the three methods as their users write them, drawn from exported case folders alone.
 
-`python -m ibr_ref.ports CASE OUT` draws a case in GLSL. Nothing here, but `described`, imports anything else of the package:
-a port in another language has the folder alone.
+`ibr-ref draw CASE OUT --with glsl | wgsl | webgl | plain` draws cases: GLSL on headless OpenGL, WGSL by wgpu, WebGL 2 on a
+page in a headless browser, and NumPy. Nothing here, but `described` and `drawing`, imports anything else of the package: a
+port in another language has the folder alone. Readers of .npy: `webgl/npy.js`, `cpp/npy.hpp`.
 """

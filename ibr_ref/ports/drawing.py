@@ -21,13 +21,16 @@ class Drawer:
     """A sample port on a device."""
 
     name: str
-    """glsl | wgsl | plain."""
+    """glsl | wgsl | webgl | plain."""
     words: str
     """The device, as its driver calls it."""
     declares: Mapping[str, str | int]
     """What `port.json` says."""
     draw: Callable[[Path], Frame]
     """The frame of a case's folder, with all stages. Raises ValueError for what is not ported."""
+
+    close: Callable[[], None] = lambda: None
+    """Gives the device back."""
 
     def into(self, case: Path, folder: Path) -> None:
         """Draw a case, and write all arrays that it has names for beside `port.json`."""
@@ -73,6 +76,8 @@ def _glsl(adapter: str | None) -> Drawer:
     """adapter: one of Mesa's drivers."""
     if adapter is not None:
         os.environ["MESA_LOADER_DRIVER_OVERRIDE" if adapter == "zink" else "GALLIUM_DRIVER"] = adapter
+    if adapter == "softpipe":  # it says 3.3, and has what the ports need of 4.5
+        os.environ |= {"MESA_GL_VERSION_OVERRIDE": "4.5", "MESA_GLSL_VERSION_OVERRIDE": "450"}
     try:
         from ibr_ref.ports.glsl import gl
 
@@ -94,6 +99,15 @@ def _wgsl(adapter: str | None) -> Drawer:
         raise ValueError(f"no WebGPU (pip install 'ibr_ref[webgpu]'): {error}") from None
     device = gpu.create_device(adapter)
     return Drawer("wgsl", device.words, {"profile": "webgpu"}, _of_given("wgsl", device))
+
+
+def _webgl(adapter: str | None) -> Drawer:
+    """adapter: a browser's command."""
+    from ibr_ref.ports.webgl.browser import Browser
+
+    browser = Browser(adapter)
+    bits = {"subpixel_bits": browser.subpixel_bits} if browser.subpixel_bits >= 4 else {}
+    return Drawer("webgl", browser.words, {"profile": "gl", **bits}, browser.draw, browser.close)
 
 
 def _plain(adapter: str | None) -> Drawer:
@@ -119,5 +133,10 @@ def _plainly(folder: Path) -> Frame:
     return Frame(color, depth, arrays)
 
 
-SAMPLES: dict[str, Callable[[str | None], Drawer]] = {"glsl": _glsl, "wgsl": _wgsl, "plain": _plain}
+SAMPLES: dict[str, Callable[[str | None], Drawer]] = {
+    "glsl": _glsl,
+    "wgsl": _wgsl,
+    "webgl": _webgl,
+    "plain": _plain,
+}
 """By name, what opens a device; the argument: which of several. Raise ValueError, one line, where there is none."""

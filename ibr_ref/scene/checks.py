@@ -144,3 +144,18 @@ def frozen(array: NDArray[np.float64]) -> NDArray[np.float64]:
     """The same array, read-only from now on."""
     array.setflags(write=False)
     return array
+
+
+def rows(value: tuple[int, int] | None, height: int) -> tuple[int, int]:
+    """(first, stop) of a picture's rows, 0 <= first < stop <= height; None: all."""
+    if value is None:
+        return 0, height
+    allowed = f"first and stop, 0 <= first < stop <= {height}"
+    try:
+        first, stop = value
+    except (TypeError, ValueError):
+        raise reject("rows", value, allowed) from None
+    low, high = whole("rows[0]", first, low=0, high=height - 1), whole("rows[1]", stop, low=1, high=height)
+    if not low < high:
+        raise reject("rows", (low, high), allowed)
+    return low, high

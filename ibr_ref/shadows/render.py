@@ -26,19 +26,25 @@ from ibr_ref.shadows.warp import Warped, grids_at, locate, shares_at, warp_stage
 
 
 def render(
-    scene: Scene, params: Params | None = None, *, maps: Maps | MapGrid | None = None, stages: bool = True
+    scene: Scene,
+    params: Params | None = None,
+    *,
+    maps: Maps | MapGrid | None = None,
+    stages: bool = True,
+    rows: tuple[int, int] | None = None,
 ) -> Frame:
     """Draw receivers and caster with the caster's shadow.
 
     maps: what `prepare` made for this scene's caster, axes and light, for any offset (for method="grid" `prepare_grid`);
     None: made here, at every call. With `stages` the frame holds every intermediate array (`contract.STAGES` lists
-    them); without, the same picture and depth sooner. Raises ValueError for inputs that only together are not allowed,
-    and for maps that do not fit the scene and the parameters.
+    them); without, the same picture and depth sooner. rows: first and one past the last row of the picture that are drawn,
+    the same bits as in all of it; None: all. Raises ValueError for inputs that only together are not allowed, and for maps
+    that do not fit the scene and the parameters.
     """
     params = Params() if params is None else params
     samples = samples_of(scene, params)
     images, kept = images_of(scene, params, samples, maps, stages)
-    surface = surface_of(scene)
+    surface = surface_of(scene, rows)
     lookup = lookup_of(scene, params, stages)
     shadow = np.zeros(surface.depth.shape)
     projections = []
@@ -174,8 +180,8 @@ def caster_from(scene: Scene | Ensemble) -> int:
     return sum(len(np.asarray(mesh.triangles)) for mesh in scene.receivers)
 
 
-def surface_of(scene: Scene | Ensemble) -> Surface:
-    """What the scene's camera sees, every caster at its offset."""
+def surface_of(scene: Scene | Ensemble, rows: tuple[int, int] | None = None) -> Surface:
+    """What the scene's camera sees, every caster at its offset; rows as in `render`."""
     objects = [
         Object(np.asarray(mesh.vertices), np.asarray(mesh.triangles), np.asarray(mesh.color))
         for mesh in scene.receivers
@@ -185,7 +191,8 @@ def surface_of(scene: Scene | Ensemble) -> Surface:
         for mesh, axes, offset in scene.movers
     ]
     camera = scene.camera
-    return see(objects, camera.view_from_world, camera.clip_from_view, camera.width, camera.height)
+    size = camera.width, camera.height
+    return see(objects, camera.view_from_world, camera.clip_from_view, *size, checks.rows(rows, camera.height))
 
 
 def lookup_of(scene: Scene | Ensemble, params: Params, keep: bool) -> Lookup:

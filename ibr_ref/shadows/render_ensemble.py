@@ -38,21 +38,26 @@ def prepare_ensemble(
 
 
 def render_ensemble(
-    ensemble: Ensemble, params: Params | None = None, *, maps: EnsembleMaps | None = None, stages: bool = True
+    ensemble: Ensemble,
+    params: Params | None = None,
+    *,
+    maps: EnsembleMaps | None = None,
+    stages: bool = True,
+    rows: tuple[int, int] | None = None,
 ) -> Frame:
     """Draw receivers and casters under all lights.
 
     For each sample of a light a point is in the shadow of the caster that darkens it most: where shadows overlap they are
     no darker. Each light adds its share, and colours above 1 become 1. With one caster and one light the frame has the bits
     of `render`. maps: [caster][light], as `prepare_ensemble` makes them (for method="grid" `prepare_grid`); None: made here,
-    at every call.
+    at every call. rows: as in `render`.
     Stages: those of `render` for each pair, "light0.caster0.warp.image" and so on, and for each light
     "light0.union.shadow" (with an axis of samples, if there are several) and "light0.accumulate.shadow". Raises ValueError
     where `render` does, and for positions in place of a number of samples under several lights.
     """
     params = Params() if params is None else params
     _check(ensemble, params, maps)
-    surface = surface_of(ensemble)
+    surface = surface_of(ensemble, rows)
     shadows: list[Floats] = []
     kept: dict[str, Any] = {}
     for light in range(len(ensemble.lights)):

@@ -12,7 +12,7 @@ from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.clip import clip_triangles
 from ibr_ref.pipeline.lighting import unit
-from ibr_ref.pipeline.triangles import set_up
+from ibr_ref.pipeline.triangles import set_up, shifted
 from ibr_ref.pipeline.visibility import interpolate, visible
 from ibr_ref.shadows.vertex import to_clip
 
@@ -78,16 +78,24 @@ def _plain_colors(objects: Sequence[Object]) -> Floats:
     return np.repeat(np.array(plain), [len(o.triangles) for o in objects], axis=0)
 
 
-def see(objects: Sequence[Object], view_from_world: Floats, clip_from_view: Floats, width: int, height: int) -> Surface:
-    """Draw objects in order, with the depth test LESS."""
+def see(
+    objects: Sequence[Object],
+    view_from_world: Floats,
+    clip_from_view: Floats,
+    width: int,
+    height: int,
+    rows: tuple[int, int],
+) -> Surface:
+    """Draw objects in order, with the depth test LESS; rows: first and one past the last of the picture that are drawn."""
     starts = np.cumsum([0] + [len(o.vertices) for o in objects])
     vertices = np.concatenate([o.vertices for o in objects])
     triangles = np.concatenate([o.triangles + start for o, start in zip(objects, starts, strict=False)])
     triangles = np.ascontiguousarray(triangles, np.int32)
     clip = to_clip(vertices, view_from_world, clip_from_view)
     drawn = set_up(clip_triangles(clip, _varyings(objects, vertices), triangles, width, height), width, height)
-    seen = visible(drawn, width, height)
-    names = np.empty((height, width), np.int32)
+    drawn, count = shifted(drawn, *rows), rows[1] - rows[0]
+    seen = visible(drawn, width, count)
+    names = np.empty((count, width), np.int32)
     _name(seen.triangle, drawn.source, names)
     normals = np.empty((len(triangles), 3))
     _normals(vertices, triangles, normals)

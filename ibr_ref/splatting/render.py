@@ -12,6 +12,7 @@ from ibr_ref.io import Frame
 from ibr_ref.pipeline.ellipses import Blend, Ellipses, accumulate, blend_for, draw_nearest, normalize
 from ibr_ref.pipeline.memory import arrays
 from ibr_ref.pipeline.points import Splats, Target, draw_splats, target_for
+from ibr_ref.scene import checks
 from ibr_ref.splatting import atlas
 from ibr_ref.splatting.batches import Rows, batches, starts_of
 from ibr_ref.splatting.buffers import Law, Lighting, Vertices, View, vertices_for
@@ -32,11 +33,13 @@ class Pass(NamedTuple):
     background: NDArray[np.float64]
     params: Params
     stages: bool
+    rows: tuple[int, int]
+    """First and one past the last that are drawn."""
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height, pixels."""
-        return int(self.view.width), int(self.view.height)
+        """Width and height of what is drawn, pixels."""
+        return int(self.view.width), self.rows[1] - self.rows[0]
 
 
 class Drawn(NamedTuple):
@@ -50,19 +53,24 @@ class Drawn(NamedTuple):
     """Those of stage raster, and of ellipses."""
 
 
-def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -> Frame:
+def render(
+    scene: Scene, params: Params | None = None, *, stages: bool = True, rows: tuple[int, int] | None = None
+) -> Frame:
     """Draw reference images with depth as splats.
 
     With `stages` the frame holds every intermediate array (`contract.STAGES` lists them); without, the same picture
-    and depth sooner, and in memory that does not grow with the number of points. Raises ValueError for an atlas that does
-    not fit, and for a law whose denominator is not positive for a point in view.
+    and depth sooner, and in memory that does not grow with the number of points. rows: first and one past the last row of
+    the picture that are drawn, the same bits as in all of it; None: all. Raises ValueError for an atlas that does not fit,
+    and for a law whose denominator is not positive for a point in view.
     """
     params = Params() if params is None else params
     references = [prepare(image) for image in scene.images]
     rects = atlas.pack([reference.size for reference in references], params.max_atlas_size)
     view, lighting, background = view_of(scene.camera), lighting_of(scene.light), np.array(scene.background)
     ways = {"software": _loop, "shader": _weighted if params.shape == "ellipse" else _nearest}
-    drawn = ways[params.method](Pass(references, view, lighting, background, params, stages))
+    drawn = ways[params.method](
+        Pass(references, view, lighting, background, params, stages, checks.rows(rows, scene.camera.height))
+    )
     frame = Frame(color=drawn.color, depth=drawn.depth, stages={})
     if stages:
         frame.stages.update(_atlas_stages(references, rects))
@@ -73,7 +81,7 @@ def render(scene: Scene, params: Params | None = None, *, stages: bool = True) -
 
 def _nearest(work: Pass) -> Drawn:
     """The paper's: squares or discs through the depth test, then the winners' colours."""
-    target = target_for(*work.size, work.stages)
+    target = target_for(*work.size, work.stages, work.rows[0])
     parts = list(batches(work.references))
     vertices = _room(work, parts)
     for batch in parts:
@@ -89,7 +97,7 @@ def _nearest(work: Pass) -> Drawn:
 
 def _weighted(work: Pass) -> Drawn:
     """Elliptical weighted averages: the nearest splats, then those of the same surface added up."""
-    target, params = blend_for(*work.size, work.stages), work.params
+    target, params = blend_for(*work.size, work.stages, work.rows[0]), work.params
     parts = list(batches(work.references))
     vertices = _room(work, parts)
     ellipses = ellipses_for(vertices)
@@ -104,7 +112,7 @@ def _weighted(work: Pass) -> Drawn:
 
 def _loop(work: Pass) -> Drawn:
     """The loop in software, point by point."""
-    starts, target = starts_of(work.references), target_for(*work.size, work.stages)
+    starts, target = starts_of(work.references), target_for(*work.size, work.stages, work.rows[0])
     color, vertices = np.empty((*target.splat.shape, 3)), vertices_for(starts[-1] if work.stages else 0)
     clear(work.background, color)
     disc, law, lighting = work.params.shape == "disc", _law(work.params), work.lighting

@@ -101,12 +101,12 @@ def _light_point(reference, normals, lighting, eye, pixel, p):
 def _draw_point(x, y, z, width, disc, index, color, target, picture):
     """The depth test at every pixel that a splat covers, and its colour where it passes."""
     x, y = snapped(x), snapped(y)
-    left, right = span(x, width, np.float64(picture.shape[1]))
-    top, stop = span(y, width, np.float64(picture.shape[0]))
+    left, right = span(x, width, 0.0, np.float64(picture.shape[1]))
+    top, stop = span(y, width, np.float64(target.top), np.float64(picture.shape[0]))
     noted = len(target.overdraw) > 0
     for row in range(top, stop):
         for column in range(left, right):
-            if not covers(disc, column, row, x, y, width):
+            if not covers(disc, column, row + target.top, x, y, width):
                 continue
             stored = target.depth[row, column]
             if noted:

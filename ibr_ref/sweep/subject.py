@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 import pickle
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, is_dataclass
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-PACKAGE = Path(__file__).parents[1]
+from ibr_ref.scene.digests import digest_of
 
 
 @dataclass(frozen=True)
@@ -39,17 +37,7 @@ class Subject:
     @property
     def digest(self) -> str:
         """SHA-256 of all that rows depend on beside their setting, the package's sources with it."""
-        found = hashlib.sha256(sources_digest().encode())
-        _add(found, (self.method, tuple(self.views), self.against))
-        return found.hexdigest()
-
-
-def sources_digest() -> str:
-    """SHA-256 of the package's sources, by which workers that have another version are told."""
-    found = hashlib.sha256()
-    for source in sorted(PACKAGE.rglob("*.py")):
-        found.update(source.relative_to(PACKAGE).as_posix().encode() + source.read_bytes())
-    return found.hexdigest()
+        return digest_of(self.method, tuple(self.views), self.against)
 
 
 class _Pickler(pickle.Pickler):
@@ -64,20 +52,3 @@ def _array(data: bytes, dtype: str, shape: tuple[int, ...], writeable: bool) -> 
     array = np.frombuffer(bytearray(data), dtype).reshape(shape)
     array.setflags(write=writeable)
     return array
-
-
-def _add(digest: Any, value: Any) -> None:
-    """Add what a description says: fields of dataclasses, elements of sequences, numbers, words, arrays."""
-    if is_dataclass(value) and not isinstance(value, type):
-        digest.update(f"{type(value).__qualname__}(".encode())
-        for field in fields(value):
-            digest.update(f"{field.name}=".encode())
-            _add(digest, getattr(value, field.name))
-    elif isinstance(value, np.ndarray):
-        digest.update(f"{value.dtype.str}{value.shape}".encode() + value.tobytes())
-    elif isinstance(value, (tuple, list)):
-        digest.update(f"[{len(value)}]".encode())
-        for each in value:
-            _add(digest, each)
-    else:
-        digest.update(f"{type(value).__qualname__} {value!r};".encode())

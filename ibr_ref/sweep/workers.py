@@ -12,9 +12,10 @@ from urllib.parse import urlsplit
 
 from ibr_ref.io.extras import needed
 from ibr_ref.scene import checks
+from ibr_ref.scene.digests import sources_digest
 from ibr_ref.sweep.settings import Setting, words
 from ibr_ref.sweep.store import EXTRA
-from ibr_ref.sweep.subject import Subject, sources_digest
+from ibr_ref.sweep.subject import Subject
 from ibr_ref.sweep.work import Row, rows_of
 
 MOST_WORKERS = 1024

@@ -11,9 +11,24 @@ scene; what they are made of, polygons, cameras, lights, meshes, depth images an
 """
 
 from ibr_ref.testing.cases import cases
+from ibr_ref.testing.door import Door
 from ibr_ref.testing.hunting import Found, Hunt
 from ibr_ref.testing.judging import Bug, PortError, bug_of, drawing
-from ibr_ref.testing.ports import Program
+from ibr_ref.testing.ports import Drawer, Program, Served, port_of
 from ibr_ref.testing.properties import assert_port
 
-__all__ = ["Bug", "Found", "Hunt", "PortError", "Program", "assert_port", "bug_of", "cases", "drawing"]
+__all__ = [
+    "Bug",
+    "Door",
+    "Drawer",
+    "Found",
+    "Hunt",
+    "PortError",
+    "Program",
+    "Served",
+    "assert_port",
+    "bug_of",
+    "cases",
+    "drawing",
+    "port_of",
+]

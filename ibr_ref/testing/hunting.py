@@ -15,7 +15,7 @@ from hypothesis.errors import HypothesisException
 
 from ibr_ref.oracle.cases import Case
 from ibr_ref.testing.cases import cases
-from ibr_ref.testing.judging import Bug, Port, WrongError, bug_of
+from ibr_ref.testing.judging import Bug, Failure, Port, WrongError, failure_of, with_causes
 
 ROUND = 200
 """Examples that Hypothesis draws before it starts anew: it derives many of them from the ones before."""
@@ -72,6 +72,14 @@ class Hunt:
                 yield found
 
 
+@dataclass(frozen=True)
+class _Shown:
+    """A bug on a case."""
+
+    case: Case
+    failure: Failure
+
+
 class _Round:
     """One run of Hypothesis, which looks for one bug."""
 
@@ -80,7 +88,7 @@ class _Round:
         self.number = hunt.seed + hunt.rounds
         self.before = hunt.tried
         self.bug: Bug | None = None
-        self.smallest: Case | None = None
+        self.smallest: _Shown | None = None
 
     def run(self) -> Found | None:
         """The bug that it found, if any."""
@@ -89,7 +97,8 @@ class _Round:
             self._test()()
         if self.bug is None or self.smallest is None:
             return None
-        return Found(self.bug, self.smallest, self.before - started, self.number)
+        bug = with_causes(self.smallest.case, self.smallest.failure)
+        return Found(bug, self.smallest.case, self.before - started, self.number)
 
     def _test(self) -> Callable[[], None]:
         database = self.hunt.database
@@ -106,16 +115,17 @@ class _Round:
     def _try(self, case: Case) -> None:
         if time.monotonic() > self.until and self.hunt.tried:  # the first case may have to wait for kernels
             raise _TimeIsUp
-        bug = bug_of(case, self.hunt.port, self.hunt.device, self.hunt.known)
+        failure = failure_of(case, self.hunt.port, self.hunt.device, self.hunt.known)
         self.hunt.tried += 1
         self.hunt.told(self.hunt)
-        if bug is None or bug != (self.bug or bug):
+        if failure is None or failure.bug != (self.bug or failure.bug):
             return
+        bug = failure.bug
         if self.bug is None:
             self.bug, self.before = bug, self.hunt.tried
             self.until = time.monotonic() + SHRINKING
-        if self.smallest is None or size_of(case) <= size_of(self.smallest):
-            self.smallest = case
+        if self.smallest is None or size_of(case) <= size_of(self.smallest.case):
+            self.smallest = _Shown(case, failure)
         raise WrongError(bug.name)
 
 

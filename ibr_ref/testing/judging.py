@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ibr_ref import methods
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.declaration import Declaration, declared
-from ibr_ref.oracle.device import LOOSEST
+from ibr_ref.oracle.device import LOOSEST, Device
 from ibr_ref.oracle.files import Submission, submission_from_arrays
-from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.judgement import Explains, Handed, Judgement, Recognizes
 from ibr_ref.oracle.trials import FREEDOMS, judge
 
 Port = Callable[[Case], Submission]
@@ -27,19 +28,43 @@ class WrongError(AssertionError):
 
 
 class Bug(NamedTuple):
-    """What is taken for one bug: where the verdict on it begins."""
+    """What is taken for one bug: where the verdict on it begins, and what is known to cause it."""
 
     method: str
     stage: str
     """The first wrong stage; "submission" for files that cannot be used, "port" for a port that does not draw."""
     array: str
     """The first of its arrays that disagrees, the file, or how the port ended."""
+    causes: tuple[str, ...] = ()
+    """Names of known bugs, of which each explains it; none: no bug that is known, or the method names none."""
 
     @property
     def name(self) -> str:
         """As a folder may be called."""
         words = f"{self.method}-{self.array if self.array.startswith(self.stage) else f'{self.stage}-{self.array}'}"
-        return "".join(c if c.isalnum() or c in "._-" else "-" for c in words)[:64]
+        words = "-".join([words, *self.causes[:1], *["or-another"][: len(self.causes[1:])]])
+        return "".join(c if c.isalnum() or c in "._-" else "-" for c in words)[:64].rstrip("-")
+
+    @property
+    def place(self) -> tuple[str, str, str]:
+        """Where it shows."""
+        return self[:3]
+
+
+class Judged(NamedTuple):
+    """What a wrong stage was judged from."""
+
+    device: Device
+    handed: Handed
+    wrong: Judgement
+
+
+class Failure(NamedTuple):
+    """A bug on a case, and how it came out."""
+
+    bug: Bug
+    judged: Judged | None = None
+    """None: there was nothing to judge."""
 
 
 def drawing(draw: Callable[[Case], Mapping[str, Any]]) -> Port:
@@ -53,38 +78,75 @@ def drawing(draw: Callable[[Case], Mapping[str, Any]]) -> Port:
     return port
 
 
-# A port's numbers may be anything.
-@np.errstate(all="ignore")
 def bug_of(case: Case, port: Port, device: str | None, known: Collection[Bug] = ()) -> Bug | None:
     """The first bug that the port shows on the case and that is not known; None where it is right, or only wrong as known.
 
     device: the profile that the port declares; without, its own, or the loosest. Each stage is judged on the port's own
     arrays of those before it, so that a known bug hides none in later stages. Small biases that the picture alone can show
-    are not looked for.
+    are not looked for. The bug has no causes: to look for them takes seconds (`with_causes`).
     """
+    failure = failure_of(case, port, device, known)
+    return None if failure is None else failure.bug
+
+
+# A port's numbers may be anything.
+@np.errstate(all="ignore")
+def failure_of(case: Case, port: Port, device: str | None, known: Collection[Bug] = ()) -> Failure | None:
+    """The same, with what has been judged."""
+    return next((f for f in _failures(case, port, device, known) if not _is_known(case, f, known)), None)
+
+
+def _failures(case: Case, port: Port, device: str | None, known: Collection[Bug]) -> Iterator[Failure]:
+    """All that is wrong; without known ones the first alone."""
     try:
         submission = port(case)
     except PortError as error:
-        return _unless_known(Bug(case.method, "port", str(error)), known)
+        yield Failure(Bug(case.method, "port", str(error)))
+        return
     if submission.problems:
-        return _unless_known(Bug(case.method, "submission", submission.problems[0].file), known)
+        yield Failure(Bug(case.method, "submission", submission.problems[0].file))
+        return
     declaration = declared(device) if device else submission.declaration
-    wrong = _wrong(case, submission, declaration, to_first_wrong=not known)
+    to_first_wrong = not known
+    wrong = _wrong(case, submission, declaration, to_first_wrong)
     if wrong and declaration.profile is None:
         # It may be right on a device that no profile is, and that `tightest` would have looked for.
-        wrong = _wrong(case, submission, Declaration(None, {**FREEDOMS, **declaration.numbers}), not known) and wrong
+        loosest = Declaration(None, {**FREEDOMS, **declaration.numbers})
+        if not _wrong(case, submission, loosest, to_first_wrong):
+            return
     stages = [judgement for judgement in wrong if judgement.stage != "image"]  # a wrong stage shows in the picture
-    found = (_bug(case, judgement) for judgement in stages or wrong)
-    return next((bug for bug in found if bug not in known), None)
+    for judgement in stages or wrong:
+        yield Failure(_bug(case, judgement), Judged(_device(declaration), submission.handed, judgement))
+
+
+@np.errstate(all="ignore")
+def with_causes(case: Case, failure: Failure) -> Bug:
+    """The bug with the known bugs that explain it, where the method has any."""
+    judge_of = methods.named(case.method).referee.open()()
+    if failure.judged is None or not isinstance(judge_of, Explains):
+        return failure.bug
+    found = judge_of.causes(case, *failure.judged)
+    return failure.bug._replace(causes=() if found is None else tuple(cause.name for cause in found.causes))
+
+
+def _is_known(case: Case, failure: Failure, known: Collection[Bug]) -> bool:
+    """Whether it shows where a known bug does, and is not another one there: known bugs that were named can be told."""
+    here = [bug for bug in known if bug.place == failure.bug.place]
+    judge_of = methods.named(case.method).referee.open()()
+    judged = failure.judged
+    if judged is None or not isinstance(judge_of, Recognizes) or not all(bug.causes for bug in here):
+        return bool(here)
+    causes = sorted({cause for bug in here for cause in bug.causes})
+    return any(judge_of.recognizes(case, *judged, cause) for cause in causes)
 
 
 def _wrong(case: Case, submission: Submission, declaration: Declaration, to_first_wrong: bool) -> list[Judgement]:
-    device = declaration.device(declaration.profile or LOOSEST)
-    return [j for j in judge(case, submission.handed, device, to_first_wrong=to_first_wrong) if j.wrong.any()]
+    found = judge(case, submission.handed, _device(declaration), to_first_wrong=to_first_wrong)
+    return [judgement for judgement in found if judgement.wrong.any()]
 
 
-def _unless_known(bug: Bug, known: Collection[Bug]) -> Bug | None:
-    return None if bug in known else bug
+def _device(declaration: Declaration) -> Device:
+    return declaration.device(declaration.profile or LOOSEST)
 
 
 def _bug(case: Case, judgement: Judgement) -> Bug:

@@ -39,9 +39,9 @@ def test_a_bug_is_a_case_from_then_on(run: Run, port: str, tmp_path: Path, one_t
     code, said, err = run("hunt", "--port", port, "--method", "displacement", "--seconds", 2, "--out", out)
     assert code == 1, err
     assert "FAIL: displacement-march.steep, first wrong in stage march" in said
-    assert "1 new bugs, 0 known from before." in said
+    assert "1 new bug, 0 known from before." in said
     assert json.loads((out / "hunt.json").read_text())["bugs"] == [
-        {"method": "displacement", "stage": "march", "array": "march.steep"}
+        {"method": "displacement", "stage": "march", "array": "march.steep", "causes": []}
     ]
     assert (out / "reports" / "displacement-march.steep.html").exists()
     assert any((out / "examples").rglob("*"))
@@ -62,6 +62,9 @@ def test_a_right_port(run: Run, port: str, tmp_path: Path, one_thread: None) -> 
 
 def test_what_cannot_be_used(run: Run, port: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = ("--out", tmp_path / "new")
+    assert_one_line(run("hunt", *out), "--port COMMAND, or --page")
+    assert_one_line(run("hunt", "--page", "--port", port, *out), "--page")
+    assert_one_line(run("hunt", "--page", "--serve", *out), "--serve")
     assert_one_line(run("hunt", "--port", "./my_port", *out), "port", "{case} and {out}")
     assert_one_line(run("hunt", "--port", "'", *out), "port", "as a shell would read it")
     assert_one_line(run("hunt", "--port", "/no/port {case} {out}", "--seconds", 1, *out), "/no/port", "cannot be run")

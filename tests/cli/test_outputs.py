@@ -185,3 +185,13 @@ def test_floats_into_a_pipe(run: Run, height: Path, tmp_path: Path) -> None:
     assert run(*rendering(height, tmp_path / "out.exr")) == (0, "", "")
     thread.join(20)
     assert found == [(tmp_path / "a.exr").read_bytes()]
+
+
+def test_out_of_memory_is_a_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*scene: object, **options: object) -> None:
+        raise MemoryError("12.0 GiB are needed")
+
+    monkeypatch.setattr("ibr_ref.displacement.render", refused)
+    write_image(tmp_path / "h.png", np.zeros((4, 4)))
+    found = run("render", "displacement", "--height", tmp_path / "h.png", "--out", tmp_path / "a.png")
+    assert_one_line(found, "out of memory: 12.0 GiB are needed")

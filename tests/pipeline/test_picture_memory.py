@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import mmap
+
 import numpy as np
+import pytest
 
 from ibr_ref.pipeline import memory
 
@@ -37,3 +40,13 @@ def test_only_so_much_is_kept_for_later() -> None:
     held = [memory.arrays([(np.uint8, (memory._MOST_FREE // 3,))]) for _ in range(4)]
     held.clear()
     assert sum(len(block) for block in memory._free) <= memory._MOST_FREE
+
+
+@pytest.mark.skipif(not hasattr(mmap, "MADV_HUGEPAGE"), reason="other systems' memory comes from NumPy, which says it")
+def test_what_would_have_been_needed_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*arguments: object, **options: object) -> None:
+        raise OSError(12, "Cannot allocate memory")
+
+    monkeypatch.setattr(memory.mmap, "mmap", refused)
+    with pytest.raises(MemoryError, match=r"^12\.0 GiB are needed for the arrays of a frame, more than there is$"):
+        memory.arrays([(np.float64, (3 * 2**29,))])

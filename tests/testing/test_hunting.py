@@ -9,8 +9,11 @@ from typing import Any
 import pytest
 
 from ibr_ref import oracle
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
+from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.testing import Bug, Hunt, PortError, assert_port, bug_of, drawing, hunting
+from ibr_ref.testing.judging import failure_of, with_causes
 from tests.oracle.tiny_cases import TINY, handed_of
 from tests.testing.test_cases import plain
 
@@ -84,6 +87,30 @@ def test_two_bugs_are_two(monkeypatch: pytest.MonkeyPatch) -> None:
     assert sorted(found) == [STEEP, CLIP]
 
 
+def drawn_by(kind: Any) -> Callable[[Case], dict[str, Any]]:
+    """What a program draws, in float32."""
+    return lambda case: kind(case.scene, case.params, Policy(), case.inputs).render()
+
+
+def test_bugs_of_one_array_are_told_apart_by_their_causes() -> None:
+    """What a known bug explains is skipped; what it does not is another bug, be it in the same array."""
+    names = "stops a little above the surface", "height of the hit from the map"
+    one, other = (next(m for m in MUTANTS if m.name == name) for name in names)
+    case = TINY["displacement-hill"]()
+    first = failure_of(case, drawing(drawn_by(one.port)), "ieee32")
+    assert first is not None
+    bug = with_causes(case, first)
+    assert bug.causes == (one.name,)
+    assert bug.name == "displacement-march.linear_index-stops-a-little-above-the-surface"
+    assert failure_of(case, drawing(drawn_by(one.port)), "ieee32", [bug]) is None
+    unnamed = bug._replace(causes=())
+    assert failure_of(case, drawing(drawn_by(one.port)), "ieee32", [unnamed]) is None
+    elsewhere = bug._replace(causes=(other.name,))
+    again = failure_of(case, drawing(drawn_by(one.port)), "ieee32", [elsewhere])
+    assert again is not None
+    assert again.bug.place == bug.place
+
+
 def test_a_right_port_has_none_and_the_time_is_kept() -> None:
     chase = hunt(reference)
     assert not [*chase.run(20)]
@@ -111,6 +138,8 @@ def test_a_port_that_does_not_draw_and_one_whose_files_are_unusable() -> None:
     )
     assert Bug("displacement", "port", "exit code 3").name == "displacement-port-exit-code-3"
     assert STEEP.name == "displacement-march.steep"
+    assert STEEP._replace(causes=("a",)).name == "displacement-march.steep-a"
+    assert STEEP._replace(causes=("a", "b", "c")).name == "displacement-march.steep-a-or-another"
 
 
 def test_a_picture_alone_is_judged_too() -> None:

@@ -83,6 +83,11 @@ class Inquiry:
                 return Explanation(causes=_named(left))
         return Explanation(causes=())
 
+    def recognizes(self, wrong: Judgement, name: str) -> bool:
+        """Whether the bug of that name explains every element of a stage; one that there is not explains none."""
+        suspects = _Suspects(self, wrong)
+        return any(suspects.explains(mutant, None) for mutant in self.mutants if mutant.name == name)
+
 
 def _named(mutants: Sequence[Mutant]) -> tuple[Cause, ...]:
     return tuple(Cause(name=m.name, says=m.fault) for m in mutants)

@@ -2,5 +2,6 @@
 
 from ibr_ref.oracle.report.junit import junit
 from ibr_ref.oracle.report.page import page, write
+from ibr_ref.oracle.report.run import Entry, entry, run_page, write_run
 
-__all__ = ["junit", "page", "write"]
+__all__ = ["Entry", "entry", "junit", "page", "run_page", "write", "write_run"]

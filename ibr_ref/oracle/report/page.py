@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-import base64
 import json
-import zlib
+from collections.abc import Iterator, Sequence
 from functools import cache
 from importlib.resources import files
+from itertools import groupby
 from os import PathLike
 from typing import Any
 
-import numpy as np
 from jinja2 import Environment, StrictUndefined, Template
-from numpy.typing import NDArray
 
 from ibr_ref.io.outputs import atomic
 from ibr_ref.oracle.examination import Examination
-from ibr_ref.oracle.report.layers import blamed, layers, planes, stage_layer
+from ibr_ref.oracle.findings import TraceStep
+from ibr_ref.oracle.report import pictures
+from ibr_ref.oracle.report.numbers import packed
+from ibr_ref.oracle.report.shift import shift
 from ibr_ref.oracle.words import MOST_LINES, words
 
-MOST_BYTES = 96 * 2**20
-"""Of the inspector's numbers before they are packed: what a browser holds with ease. Stages beyond it are left out."""
+MOST_CHARACTERS = 2_900_000
+"""Of the pictures and the inspector's numbers; pictures come first."""
+LEAST_NUMBERS = 300_000
+"""Of the numbers, however large the pictures are."""
+
+FOLDED = 4
+"""Rows in a row of which reference and port have the same: from so many on they are folded."""
 
 
 def write(examination: Examination, path: str | PathLike[str]) -> None:
@@ -33,35 +39,50 @@ def write(examination: Examination, path: str | PathLike[str]) -> None:
 def page(examination: Examination) -> str:
     """The page as text."""
     verdict = examination.verdict
-    first = examination.first_wrong
-    pictures = layers(examination)
     height, width = examination.case.frame.color.shape[:2]
-    return _template().render(
+    data = _data(examination)
+    return template("page.html").render(
         verdict=verdict,
         words=words(verdict, trace=False),  # which have tables of their own
         most_lines=MOST_LINES,
+        folded=folded,
         about=examination.case.about,
-        layers=pictures,
-        compared=len(pictures) > 1,
-        stage=None if first is None or first.stage == "image" else stage_layer(first),
+        compared=data["port"] is not None,
+        shift=shift(examination),
+        stages=_stages(examination),
         width=width,
         height=height,
         start=_start(examination),
-        style=_asset("page.css"),
-        script=_asset("page.js"),
-        data=_script_safe(_inspector(examination)),
+        style=asset("page.css"),
+        script=asset("page.js"),
+        data=script_safe(data),
     )
 
 
 @cache
-def _template() -> Template:
+def template(name: str) -> Template:
     """Compiled once: it takes longer than all else that is done for a small page."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    return environment.from_string(_asset("page.html"))
+    return environment.from_string(asset(name))
 
 
-def _asset(name: str) -> str:
+def asset(name: str) -> str:
+    """A file of this folder."""
     return files("ibr_ref.oracle.report").joinpath(name).read_text("utf-8")
+
+
+def folded(trace: Sequence[TraceStep]) -> Iterator[tuple[bool, list[TraceStep]]]:
+    """The rows in groups: (whether it is folded, its rows)."""
+    for same, group in groupby(trace, lambda step: bool(step.port) and step.port == step.reference):
+        rows = list(group)
+        yield same and len(rows) >= FOLDED, rows
+
+
+def _stages(examination: Examination) -> list[tuple[str, str]]:
+    """(name, address of a picture) of each wrong stage that has places in two dimensions."""
+    wrong = [j for j in examination.judgements if j.stage != "image" and j.wrong.any()]
+    found = ((judgement.stage, pictures.stage_address(judgement)) for judgement in wrong)
+    return [(stage, address) for stage, address in found if address is not None]
 
 
 def _start(examination: Examination) -> tuple[int, int]:
@@ -74,34 +95,20 @@ def _start(examination: Examination) -> tuple[int, int]:
     return width // 2, height // 2
 
 
-def _inspector(examination: Examination) -> dict[str, Any]:
-    """Everything that is shown of a pixel, as packed arrays."""
-    image = examination.judgement("image")
-    arrays, room = [], MOST_BYTES
-    for name, pair in planes(examination).items():
-        packed = [None if array is None else _pack(array) for array in (*pair, blamed(examination, name))]
-        room -= sum(p["bytes"] for p in packed if p is not None)
-        if room < 0:
-            break
-        arrays.append({"name": name, "reference": packed[0], "port": packed[1], "wrong": packed[2]})
-    status = None
-    if image is not None:
-        status = _pack((image.undecided + 2 * image.wrong).astype(np.int32))
-    return {"arrays": arrays, "status": status}
-
-
-def _pack(array: NDArray[np.generic]) -> dict[str, Any]:
-    """Little-endian float32 or int32 numbers, deflated, in base64."""
-    integers = array.dtype.kind in "biu"
-    numbers = np.ascontiguousarray(array, "<i4" if integers else "<f4")
-    return {
-        "kind": "int" if integers else "float",
-        "channels": int(np.prod(array.shape[2:], dtype=int)),
-        "bytes": numbers.nbytes,
-        "data": base64.b64encode(zlib.compress(numbers.tobytes(), 6)).decode("ascii"),
+def _data(examination: Examination) -> dict[str, Any]:
+    """Pictures and numbers. The port's picture is what has to be added to the reference's, modulo 256."""
+    reference, port = pictures.reference(examination), pictures.port(examination)
+    status, moved = pictures.status(examination), shift(examination)
+    found: dict[str, Any] = {
+        "reference": pictures.address(reference),
+        "port": None if port is None else pictures.address(port - reference),
+        "status": None if status is None else pictures.address(status),
+        "shift": None if moved is None else pictures.address(moved.picture),
     }
+    used = sum(len(address) for address in found.values() if address is not None)
+    return {**found, **packed(examination, max(MOST_CHARACTERS - used, LEAST_NUMBERS))}
 
 
-def _script_safe(data: dict[str, Any]) -> str:
+def script_safe(data: Any) -> str:
     """JSON that cannot end the script element that it stands in."""
     return json.dumps(data).replace("<", "\\u003c")

@@ -45,7 +45,7 @@ layout(location = 1) flat in int face;
 layout(location = 0) out vec4 out_color;
 #ifdef STAGES
 layout(location = 1) out ivec4 out_index;   // face, patch id, linear index, hit index
-layout(location = 2) out vec4 out_patch;    // C, -
+layout(location = 2) out vec4 out_patch;    // C, depth: WebGL reads no depth buffer
 layout(location = 3) out vec4 out_hit;      // hit, height before
 layout(location = 4) out vec4 out_albedo;   // albedo, lit
 layout(location = 5) out vec4 out_normal;   // normal, steep
@@ -212,10 +212,11 @@ void main() {
 #ifndef STAGES
     gl_FragDepth = depth;
 #else
-    gl_FragDepth = kept ? depth : MISS_DEPTH;
+    float written = kept ? depth : MISS_DEPTH;
+    gl_FragDepth = written;
     out_color = kept ? out_color : vec4(background.rgb, 0.0);
     out_index = ivec4(face, identity.x, kept ? int(hit.linear_index) : -1, kept ? int(hit.hit_index) : -1);
-    out_patch = vec4(patch_position, 1.0);
+    out_patch = vec4(patch_position, written);
     out_hit = vec4(hit.position, kept ? hit.before : 0.0);
     out_albedo = vec4(albedo, lit ? 1.0 : 0.0);
     out_normal = vec4(normal, kept && hit.steep ? 1.0 : 0.0);

@@ -15,30 +15,7 @@ import moderngl
 import numpy as np
 
 from ibr_ref.ports.glsl import gl
-
-
-def place_in_cell(positions: np.ndarray, offset: np.ndarray) -> tuple[list[int], list[float]]:
-    """The cell (2,) of the 3 x 3 maps that holds an offset, and its fractions in it, x first."""
-    lines = positions[0, :, 0], positions[:, 0, 1]
-    cell = [int(value >= line[1]) for line, value in zip(lines, offset, strict=True)]
-    ends = [line[i : i + 2] for line, i in zip(lines, cell, strict=True)]
-    return cell, [float((o - low) / (high - low)) for o, (low, high) in zip(offset, ends, strict=True)]
-
-
-def shares_in_cell(depths: np.ndarray | None, cell: Sequence[int], fraction: Sequence[float]) -> tuple[float, ...]:
-    """The shares of the next map in the upper row and in the lower one, and of the lower row.
-
-    depths (3, 3): the caster's in the nine maps, for the projective pace; None: s, s, t.
-    """
-    (i, j), (s, t) = cell, fraction
-    if depths is None:
-        return s, s, t
-
-    def share(f: float, w0: float, w1: float) -> float:
-        return float(f * w1 / ((1.0 - f) * w0 + f * w1))
-
-    (w00, w10), (w01, w11) = depths[j : j + 2, i : i + 2].tolist()
-    return share(s, w00, w10), share(s, w01, w11), share(t, (1 - s) * w00 + s * w10, (1 - s) * w01 + s * w11)
+from ibr_ref.ports.shadow_scene import mesh_indices, offset_in_world
 
 
 class Programs:
@@ -71,11 +48,6 @@ class Programs:
 def column_major(matrix: np.ndarray) -> bytes:
     """A (4, 4) matrix as a mat4 uniform takes it."""
     return np.asarray(matrix, np.float32).T.tobytes()
-
-
-def offset_in_world(scene: Any, offset: np.ndarray) -> tuple[float, ...]:
-    """x a + y b."""
-    return tuple((np.asarray(offset, float) @ np.asarray(scene.offset_axes, float)).tolist())
 
 
 @dataclass
@@ -289,9 +261,3 @@ def create_warped_maps(
         outside=0.0 if params.content == "mask" else 1.0,
         owned=[*(vao for vao in row_vaos if vao), *column_vaos.values(), *capture_vaos.values(), points, indices],
     )
-
-
-def mesh_indices(rows: int, columns: int) -> np.ndarray:
-    """Cells row by row, each (r, c), (r, c+1), (r+1, c+1) and (r, c), (r+1, c+1), (r+1, c)."""
-    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1, 1)
-    return np.asarray(corner + np.array([0, 1, columns + 1, 0, columns + 1, columns]), np.uint32)

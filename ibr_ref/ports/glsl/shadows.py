@@ -30,10 +30,8 @@ from ibr_ref.ports.glsl.shadow_maps import (
     WarpedMaps,
     column_major,
     create_warped_maps,
-    offset_in_world,
-    place_in_cell,
-    shares_in_cell,
 )
+from ibr_ref.ports.shadow_scene import offset_in_world, place_in_cell, shares_in_cell, vertices
 
 FAST = {"place": (4, "f4"), "surface": (4, "f1")}
 STAGES = {"place": (4, "f4"), "surface": (4, "f4")}
@@ -215,9 +213,8 @@ class Port:
         _check(params)
         ctx, camera = self.device.ctx, scene.camera
         size = int(camera.width), int(camera.height)
-        rows = _vertices(scene)
-        vertices = ctx.buffer(rows.tobytes())
-        layout = [(vertices, "3f 3f 3f 1f", "in_position", "in_normal", "in_color", "in_caster")]
+        buffer = ctx.buffer(vertices(scene).tobytes())
+        layout = [(buffer, "3f 3f 3f 1f", "in_position", "in_normal", "in_color", "in_caster")]
         surface = ctx.vertex_array(self._programs.get("surface", "surface"), layout)
         flags = _flags(params, stages)
         project = ctx.vertex_array(self._programs.get("screen", "project", *flags), [])
@@ -243,23 +240,8 @@ class Port:
             resolve=resolve,
             accumulated=Pass.of(self.device, *size, "f4" if params.accumulation == "float" else "f1"),
             picture=gl.create_target(self.device, *size, {"color": (4, "f4" if stages else "f1")}),
-            owned=[*vaos, vertices],
+            owned=[*vaos, buffer],
         )
-
-
-def _vertices(scene: Any) -> np.ndarray:
-    """(3 T, 10) float32: position, flat normal, colour, 1 on the caster; receivers in order, then the caster."""
-    parts = []
-    for mesh, caster in [*((receiver, 0.0) for receiver in scene.receivers), (scene.caster, 1.0)]:
-        triangles, color = np.asarray(mesh.triangles), np.asarray(mesh.color, float)
-        corners = np.asarray(mesh.vertices, float)[triangles]
-        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(float).tiny)
-        colors = color[triangles] if color.ndim == 2 else np.broadcast_to(color, corners.shape)
-        normals = np.broadcast_to(normal[:, None], corners.shape)
-        kind = np.full((*corners.shape[:2], 1), caster)
-        parts.append(np.concatenate([corners, normals, colors, kind], axis=2).reshape(-1, 10))
-    return np.concatenate(parts).astype(np.float32)
 
 
 def _flags(params: Any, stages: bool) -> list[str]:

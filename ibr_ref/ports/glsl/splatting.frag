@@ -12,6 +12,9 @@ layout(location = 0) out vec4 out_color;
 #ifdef STAGES
 layout(location = 1) out int out_splat;
 #endif
+#ifdef DEPTH_TOO
+layout(location = 2) out float out_depth;       // WebGL reads no depth buffer
+#endif
 
 void main() {
 #ifdef DISC
@@ -21,5 +24,8 @@ void main() {
     out_color = vec4(color, 1.0);
 #ifdef STAGES
     out_splat = splat;
+#endif
+#ifdef DEPTH_TOO
+    out_depth = gl_FragCoord.z;
 #endif
 }

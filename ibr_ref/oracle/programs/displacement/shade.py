@@ -156,13 +156,16 @@ class Shade(SelfShadow):
     def facade_at(self, patch: Patch, hit: Vector, gradient: tuple[Floats, Floats]) -> Vector:
         """The tile on a wall: along it, and up from the ground."""
         assert patch.facade is not None
+        across, down = self.facade_place(patch, hit, np.asarray(self.faces_u(patch, hit, gradient)))
+        return list(self.facade_fetch(patch.facade, across, down).T)
+
+    def facade_place(self, patch: Patch, hit: Vector, faces_u: Bools) -> tuple[Floats, Floats]:
+        """Tiles across and down."""
         u, v, h = hit
         length_u, length_v = self.edge_lengths(patch)
-        faces_u = np.asarray(self.faces_u(patch, hit, gradient))
         along = np.where(faces_u, self.do.multiply(v, length_v), self.do.multiply(u, length_u))
         across = self.do.divide(along, patch.facade_tile[0])
-        down = self.facade_row(self.do.divide(self.do.multiply(h, patch.scale), patch.facade_tile[1]))
-        return list(self.facade_fetch(patch.facade, across, down).T)
+        return across, self.facade_row(self.do.divide(self.do.multiply(h, patch.scale), patch.facade_tile[1]))
 
     def facade_row(self, tiles_up: Floats) -> Floats:
         """Rows run down: the bottom row stands on the ground."""

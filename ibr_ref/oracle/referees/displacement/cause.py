@@ -29,6 +29,19 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
     """
     if wrong.stage == "image":
         return None
+    inquiry = _inquiry(case, device, handed)
+    hidden = inquiry.hidden_in(wrong.stage, handed)
+    if wrong.stage == "shade" and "color" in wrong.arrays:  # by the depth test another polygon's are shown
+        hidden.append("resolve")
+    return inquiry.causes(wrong, (wrong.stage,), hidden)
+
+
+def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
+    """Whether the bug of that name explains every element of a stage; one that there is not explains none."""
+    return wrong.stage != "image" and _inquiry(case, device, handed).recognizes(wrong, cause)
+
+
+def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
     right = Stages(Port(model=Model(case, device), handed=handed))
 
     def replay(kind: type[Any], among: Bools | None) -> Stages:
@@ -37,16 +50,12 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
             stages.take_fragments(right)
         return stages
 
-    inquiry = Inquiry(
+    return Inquiry(
         mutants=[mutant for mutant in MUTANTS if mutant.applies(case.system)],
         arrays={**ARRAYS, "resolve": ()},
         replay=replay,
         sampled=("march", "shade", "resolve"),
     )
-    hidden = inquiry.hidden_in(wrong.stage, handed)
-    if wrong.stage == "shade" and "color" in wrong.arrays:  # by the depth test another polygon's are shown
-        hidden.append("resolve")
-    return inquiry.causes(wrong, (wrong.stage,), hidden)
 
 
 def _draws_the_same_faces(kind: type[Any]) -> bool:

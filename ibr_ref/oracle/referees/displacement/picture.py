@@ -28,6 +28,10 @@ SMALLEST = 2.0**-14
 """Pixels: a box no larger has no parts; corners that are not snapped elsewhere move by their roundings only."""
 
 
+ANYWHERE = 0.1
+"""Of a patch: points that a sliver at the picture's border leaves so open are not followed."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Boxes:
     """(n,) parts of the boxes of fragments, in units of their halves."""
@@ -107,8 +111,11 @@ class Picture:
 
     def looks(self, boxes: Boxes) -> Iterator[tuple[Looks, Ints]]:
         """The outcomes of boxes, some thousands at a time, and the boxes that have too many."""
+        anywhere = self.fragments.pieces[boxes.fragment, :3].max(axis=1, initial=0.0) > ANYWHERE
+        if anywhere.any():
+            yield self._nothing(), np.flatnonzero(anywhere)
         for polygon in range(len(self.model.patches)):
-            mine = np.flatnonzero(self.fragments.polygon[boxes.fragment] == polygon)
+            mine = np.flatnonzero((self.fragments.polygon[boxes.fragment] == polygon) & ~anywhere)
             for first in range(0, len(mine), CHUNK):
                 some = mine[first : first + CHUNK]
                 yield self._looks(polygon, boxes.take(some), some)

@@ -25,7 +25,7 @@ from ibr_ref.oracle.referees.displacement.replay import (
     raster_input,
     shade_input,
 )
-from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Vector
+from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades, Vector
 
 
 def trace(case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
@@ -268,14 +268,52 @@ def _shade(port: Port, pixel: int, hits: Hits) -> Iterator[TraceRow]:
         gradient = [model.machine.of(g) for g in model.program.gradient(patch, hit)]
         yield _row("gradient (g_u, g_v) of the height map", gradient, None)
         yield from _shadow(port, patch, hit, shades.lit[shades.hit == i])
+        if patch.facade is not None and bool(hits.steep[i]):
+            yield from _facade(model, patch, hit)
     for i in range(len(shades)):
         for name, legal in (("shade.albedo", shades.albedo), ("shade.normal", shades.normal)):
             yield _row(f"legal: {name}" if name in port.handed else name, _one(legal, i), None)
         yield TraceRow(step="legal: shade.lit", reference=str(bool(shades.lit[i])), port="")
+        yield from _terms(model, hits, shades, i)
     if not port.names("shade"):
         _, color, _ = lighted(model, hits, shades)
         for i in range(len(color[0])):
             yield _row("colour", _one(color, i), None)
+
+
+def _facade(model: Model, patch: Any, hit: Vector) -> Iterator[TraceRow]:
+    """Where on its tile a wall's colour comes from."""
+    program, machine = model.program, model.machine
+    machine.begin(np.zeros(1, np.int64))
+    faces_u = bool(np.asarray(program.faces_u(patch, hit, program.gradient(patch, hit)))[0])
+    yield TraceRow(step="the wall faces along", reference="u" if faces_u else "v", port="")
+    machine.begin(np.zeros(1, np.int64))
+    yield _row(
+        "tiles across, and down", [machine.of(x) for x in program.facade_place(patch, hit, np.array([faces_u]))], None
+    )
+
+
+def _terms(model: Model, hits: Hits, shades: Shades, shade: int) -> Iterator[TraceRow]:
+    """What a colour is made of."""
+    program, machine, lane = model.program, model.machine, np.zeros(1, np.int64)
+    machine.begin(lane)
+    at = int(shades.hit[shade])
+    patch = model.patches[int(hits.polygon[at])]
+    hit = [machine.lanes(x, lane) for x in _one(hits.hit, at)]
+    normal = [machine.lanes(x, lane) for x in _one(shades.normal, shade)]
+    world = program.to_world(patch, hit)
+    to_light, to_eye = program.do.unit(program.light_way(patch, world)), program.do.unit(program.eye_way(patch, world))
+    cosine, lit = program.do.dot(normal, to_light), shades.lit[shade : shade + 1]
+    yield _row("n . l", machine.of(cosine), None)
+    yield _row("ambient", machine.of(program.ambient()), None)
+    yield _row(
+        "ambient + diffuse max(0, n . l) where lit",
+        machine.of(program.brightness(program.diffuse_cosine(cosine), lit)),
+        None,
+    )
+    if model.case.scene.light.specular > 0.0:
+        yield _row("r . v", machine.of(program.reflected_cosine(normal, to_light, to_eye, cosine)), None)
+        yield _row("highlight", machine.of(program.highlights(normal, to_light, to_eye, cosine, lit)), None)
 
 
 def _shadow(port: Port, patch: Any, hit: Vector, lit: Ints) -> Iterator[TraceRow]:

@@ -19,14 +19,23 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
 
     Bugs of the stage first, then, where none of them does, those that may hide in it; of a picture those of all stages.
     """
+    inquiry = _inquiry(case, device, handed)
+    if wrong.stage == "image":
+        return inquiry.causes(wrong, ARRAYS)
+    return inquiry.causes(wrong, (wrong.stage,), inquiry.hidden_in(wrong.stage, handed))
+
+
+def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
+    """Whether the bug of that name explains every element of a stage, or of a picture."""
+    return _inquiry(case, device, handed).recognizes(wrong, cause)
+
+
+def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
     right = Stages(model_of(case, device), handed)
 
     def replay(kind: type[Any], among: Bools | None) -> Stages:
         return Stages(Model(case, device, kind, right.port.model), handed, among, right)
 
-    inquiry = Inquiry(
+    return Inquiry(
         mutants=MUTANTS, arrays={**ARRAYS, "image": ()}, replay=replay, sampled=("normals", "vertex", "image")
     )
-    if wrong.stage == "image":
-        return inquiry.causes(wrong, ARRAYS)
-    return inquiry.causes(wrong, (wrong.stage,), inquiry.hidden_in(wrong.stage, handed))

@@ -1,0 +1,84 @@
+"""`ibr-ref draw` and `ibr-ref conformance`, with the port that needs no driver."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.cli.conftest import Run
+from tests.cli.errors import assert_one_line
+
+CASE = "splatting-ball"
+
+
+@pytest.fixture(autouse=True)
+def quiet(one_thread: None) -> None:
+    """As all command lines here."""
+
+
+def test_what_is_drawn_is_judged(run: Run, tmp_path: Path) -> None:
+    code, said, _ = run("draw", CASE, tmp_path / "ball", "--with", "plain")
+    assert (code, said.startswith("1 of 1 drawn in plain on NumPy ")) == (0, True)
+    assert json.loads((tmp_path / "ball" / "port.json").read_text()) == {"profile": "ieee32"}
+    code, said, _ = run("check", CASE, tmp_path / "ball")
+    assert (code, said.startswith(f"PASS: {CASE}")) == (0, True)
+
+
+def test_a_case_s_folder_alone(run: Run, tmp_path: Path) -> None:
+    assert run("export", CASE, tmp_path / "cases" / "ball")[0] == 0
+    assert run("draw", tmp_path / "cases", tmp_path / "drawn", "--with", "plain")[0] == 0
+    assert np.load(tmp_path / "drawn" / "ball" / "color.npy").shape == (72, 96, 3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("draw", "no-such", "out", "--with", "plain"), "case: found 'no-such'"),
+        (("draw", CASE, "out", "--with", "metal"), "--with"),
+        (("draw", CASE, "out", "--with", "plain", "--adapter", "x"), "adapter: found 'x', allowed: none with plain"),
+        (("conformance", CASE, "--with", "webgl", "--adapter", "false"), "no WebGL 2: false ended with exit code 1"),
+    ],
+)
+def test_what_is_wrong_is_one_line(arguments: tuple[str, ...], said: str, run: Run, tmp_path: Path) -> None:
+    found = run(*(tmp_path / "out" if each == "out" else each for each in arguments))
+    assert_one_line(found, said)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_conformance_run(run: Run, tmp_path: Path) -> None:
+    """A line a case, a page, numbers, and the exit code of the worst."""
+    code, said, _ = run("conformance", "splatting-[bl]*", "--with", "plain", "--out", tmp_path / "out")
+    lines = said.splitlines()
+    assert code == 0
+    assert lines[0].startswith("plain on NumPy ")
+    assert lines[1:] == [
+        f"PASS          {CASE}  on ieee32",
+        "PASS          splatting-lamp  on ieee32",
+        "2 cases: 2 PASS.",
+    ]
+    document = json.loads((tmp_path / "out" / "conformance.json").read_text())
+    assert document["declares"] == {"profile": "ieee32"}
+    assert [(row["case"], row["outcome"]) for row in document["cases"]] == [(CASE, "PASS"), ("splatting-lamp", "PASS")]
+    page = (tmp_path / "out" / "index.html").read_text()
+    assert "<h1>2 of 2 cases pass</h1>" in page
+    assert page.count('class="PASS"') == 2
+
+
+def test_a_case_that_fails_has_a_report(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from ibr_ref.ports import drawing
+
+    plain = drawing._plainly
+
+    def brighter(folder: Path) -> drawing.Frame:
+        frame = plain(folder)
+        return drawing.Frame(np.clip(frame.color + 0.1, 0.0, 1.0), frame.depth, frame.stages)
+
+    monkeypatch.setattr(drawing, "_plainly", brighter)
+    code, said, _ = run("conformance", CASE, "--with", "plain", "--out", tmp_path / "out")
+    assert code == 1
+    assert said.splitlines()[1].startswith(f"FAIL          {CASE}  ")
+    assert f'<a href="{CASE}.html">' in (tmp_path / "out" / "index.html").read_text()
+    assert (tmp_path / "out" / f"{CASE}.html").is_file()
