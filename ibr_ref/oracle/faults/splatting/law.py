@@ -184,9 +184,9 @@ class _DistanceFromTheNearPlane(Port):
         return self.do.subtract(super().distance(image, world, view), self.do.number(self.scene.camera.near))
 
 
-@LAW.add("law-of-bytes", small=True)
-class _LawOfBytes(Port):
-    """β, γ and δ are uploaded as bytes of a texture."""
+@LAW.add("law-of-eight-bits", small=True)
+class _LawOfEightBits(Port):
+    """β, γ and δ are fixed-point numbers of 8 fractional bits."""
 
     def law(self) -> list[Floats]:
-        return [np.rint(255.0 * coefficient) / 255.0 for coefficient in super().law()]
+        return [np.rint(256.0 * coefficient) / 256.0 for coefficient in super().law()]
