@@ -6,18 +6,22 @@ The program says where a splat's borders are and what the depth test lets throug
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ibr_ref.array_types import Bools, Floats, Ints
+from ibr_ref.oracle.accept.borders import CROSSING
 from ibr_ref.oracle.accept.winners import winners
 from ibr_ref.oracle.arithmetic.number import Number, may_and_must
+from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.programs.splatting.raster import Fragments
 
 CHUNK = 1 << 21
 """Pairs of a splat and a pixel that are looked at together: some 100 MB."""
+CUTS = 2.0
+"""By as many borders a corner of a square is made at the most."""
 MOST_PAIRS = 1 << 27
 """More than these are not looked at: widths far beyond the law's, which were wrong before, would take minutes."""
 
@@ -72,8 +76,30 @@ class Contest:
     """False: there were too many pairs, and nothing is known."""
 
 
+def recut(program: Any, points: Drawn) -> Drawn:
+    """What devices may cut at the picture's borders: a quad there has corners anew, sums p (1 - t) + q t of its own.
+
+    They lie where they did, and the quad's depth is theirs, but for the roundings of x, y or z, and of w, at each of two
+    borders, and one quotient. A piece covers pixels' centres: none is narrower than half a pixel across the border.
+    """
+    camera, device = program.scene.camera, points.depth.ops.device
+    if not device.clip_border:
+        return points
+    window, unit = [], (2.0 * CUTS * CROSSING * device.operation + device.quotient) * UNIT
+    reaches, half = np.zeros(len(points.sure), np.bool_), 0.5 * points.width.high + 1.0
+    for x, size in zip(points.window, (camera.width, camera.height), strict=True):
+        reaches |= (x.low - half < 0.0) | (x.high + half > size)
+    for x, size in zip(points.window, (camera.width, camera.height), strict=True):
+        off = np.where(reaches, unit * (np.abs(x.value) + 0.5 * size), 0.0)
+        window.append(Number(x.ops, x.value, x.deviation + off))
+    off = np.where(reaches, unit * np.abs(points.depth.value), 0.0)
+    depth = Number(points.depth.ops, points.depth.value, points.depth.deviation + off)
+    return replace(points, window=window, depth=depth)
+
+
 def contest(program: Any, points: Drawn) -> Contest:
     """All splats against each other in the program's picture."""
+    points = recut(program, points)
     camera = program.scene.camera
     pixels, depth = camera.width * camera.height, program.stored_depth(points.depth)
     live = np.flatnonzero(points.possible & (points.width.high > 0.0))

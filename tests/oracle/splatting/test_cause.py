@@ -24,7 +24,7 @@ STAGED = (
     "color-of-the-pixel-above",
 )
 """One of each kind; all of them are in the note of the naming tables."""
-PICTURED = ("upside-down", "half-vector")
+PICTURED = ("upside-down", "color-of-the-pixel-to-the-left")
 
 
 def named(arrays: Arrays) -> list[str]:

@@ -184,9 +184,9 @@ class _DistanceFromTheNearPlane(Port):
         return self.do.subtract(super().distance(image, world, view), self.do.number(self.scene.camera.near))
 
 
-@LAW.add("law-of-half-precision", small=True)
-class _LawOfHalfPrecision(Port):
-    """β, γ and δ are uploaded as half floats."""
+@LAW.add("law-of-eight-bits", small=True)
+class _LawOfEightBits(Port):
+    """β, γ and δ are fixed-point numbers of 8 fractional bits."""
 
     def law(self) -> list[Floats]:
-        return [self.do.number(np.float16(getattr(self.params, name))) for name in ("beta", "gamma", "delta")]
+        return [np.rint(256.0 * coefficient) / 256.0 for coefficient in super().law()]

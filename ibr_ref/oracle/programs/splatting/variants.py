@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.faults.kinds import Variant
-from ibr_ref.oracle.programs.splatting.case import Bools, Floats, Image, Vector
+from ibr_ref.oracle.programs.splatting.case import Bools, Floats, Image, Ints, Vector
 from ibr_ref.oracle.programs.splatting.port import Port
 from ibr_ref.oracle.programs.splatting.raster import Fragments, Splats
 
@@ -95,6 +97,18 @@ class _Quads(Port):
         return super().in_disc(moved, fragments)
 
 
+class _CutQuads(_Quads):
+    """Quads are cut at the picture's borders, and their depth is made of that of the corners, and w of theirs, anew."""
+
+    def splats(self, vertex: Ints, window: Vector, width: Floats, depth: Floats) -> Splats:
+        for axis, size in zip(window, (self.scene.camera.width, self.scene.camera.height), strict=True):
+            beyond = np.maximum(0.5 * width - axis, axis + 0.5 * width - size)
+            t = self.do.divide(beyond, width)
+            z, w = (self.do.lerp(x, x, t) for x in (depth, np.ones(len(depth))))
+            depth = np.where((t > 0.0) & (t < 1.0), self.do.divide(z, w), depth)
+        return super().splats(vertex, window, width, depth)
+
+
 class _AllAtOnce(_ClipFromWorld, _Viewport, _HornersLaw, _CosinesOnly, _Quads):
     """Other orders in every stage that has one."""
 
@@ -137,6 +151,8 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("subpixels-up", Policy(subpixel_rounding="up"), "vulkan"),
     Variant("subpixels-truncated", Policy(subpixel_rounding="down"), "vulkan"),
     Variant("quads", _FLOAT32, "vulkan", _Quads),
+    Variant("quads-cut-at-the-borders", Policy(loose=2, seed=4), "vulkan", _CutQuads),
+    Variant("quads-cut-at-the-borders-with-jitter", Policy(jitter=2, seed=4), "gl", _CutQuads),
     Variant("depth-24", Policy(depth_bits=24), "vulkan"),
     # Looser in sums and products than any interface grants: in the profile with the most room.
     Variant("jitter-1", Policy(jitter=1, seed=1), "gl"),

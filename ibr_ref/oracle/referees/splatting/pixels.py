@@ -14,7 +14,7 @@ from ibr_ref.oracle.arithmetic.decisions import joined
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.pipeline.splats import Contest, contest
+from ibr_ref.oracle.pipeline.splats import Contest, contest, recut
 from ibr_ref.oracle.programs.splatting import Port as Program
 from ibr_ref.oracle.referees.outcomes import converted, stored
 from ibr_ref.oracle.referees.reads import fed
@@ -122,7 +122,8 @@ def named(model: Model, points: Table, placed: Placed, handed: Handed) -> Seen:
     judged = (winner >= -1) & (winner < len(points))
     pixel = np.flatnonzero(judged)
     winner = winner[pixel]
-    depth = model.machine.where(winner >= 0, model.program.stored_depth(placed.depth)[np.maximum(winner, 0)], 1.0)
+    depth = model.program.stored_depth(recut(model.program, placed).depth)[np.maximum(winner, 0)]
+    depth = model.machine.where(winner >= 0, depth, 1.0)
     if "raster.depth" not in handed:
         judged[pixel[~np.isfinite(depth.value)]] = False
     return Seen(pixel, winner, depth, judged)
@@ -191,7 +192,7 @@ def colors_of(model: Model, points: Table, placed: Placed, winner: Ints, handed:
     if "vertex.color" in handed:
         own = stored(model.machine, np.asarray(handed["vertex.color"], np.float64))
         return [Branch(own, np.ones(len(points), np.bool_))]
-    asked = np.unique(winner[winner >= 0]) if model.program.right("splat_color") else None
+    asked = np.unique(winner[winner >= 0]) if model.program.right("splat_color", "read_at") else None
     return model.colors(points, placed.world, asked)
 
 
@@ -201,11 +202,11 @@ def colors_of(model: Model, points: Table, placed: Placed, winner: Ints, handed:
 def judge_image(port: Port, among: Bools | None = None) -> Judgement:
     """The picture from the case alone, its points lit with the case's normals, or with the port's own if these are legal.
 
-    among: (H W,) the pixels that are judged.
+    among: (H W,) the pixels that are judged, where each hangs on its own winner.
     """
     model, handed = port.model, port.handed
     found = seen(model, model.own, model.own_places)
-    if among is not None:
+    if among is not None and model.program.right("read_at"):
         found = replace(found.take(among[found.pixel]), judged=found.judged & among)
         wrong = _without(found.judged, found.pixel[_deep(found, handed)]).reshape(pixels_of(model))
         if wrong.any():  # before any point is lit
