@@ -52,7 +52,7 @@ def test_what_is_rendered_is_a_case(
 
 
 @pytest.mark.parametrize(
-    ("method", "option"), [("displacement", "relief"), ("shadows", "grid"), ("shadows", "pcss"), ("splatting", "")]
+    ("method", "option"), [("displacement", "exact"), ("shadows", "grid"), ("shadows", "pcss"), ("splatting", "")]
 )
 def test_what_is_not_judged_is_no_case(
     run: Run, tmp_path: Path, height: Path, cube: Path, method: str, option: str
