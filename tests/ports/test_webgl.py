@@ -28,6 +28,7 @@ def drawer() -> Iterator[Any]:
     "name",
     [
         "displacement-box",
+        "displacement-parallax",
         "splatting-lamp",
         "splatting-discs",
         "shadows-pace",

@@ -1,4 +1,4 @@
-// Protruded displacement mapping in WebGL 2, by the shaders of the OpenGL port.
+// Protruded displacement mapping in WebGL 2, and the searches below the polygon, by the shaders of the OpenGL port.
 
 import {channels} from "./gl.js";
 
@@ -8,11 +8,14 @@ const FACES = [
     [[0, 1, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1]], [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
 ];
 const ATTACHMENTS = {color: "RGBA32F", index: "RGBA32I", patch: "RGBA32F", hit: "RGBA32F", albedo: "RGBA32F", normal: "RGBA32F"};
+const BELOW = ["relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone"];
 const UNUSED = {shape: [1, 1, 3], data: new Float64Array(3)};
 
 /** All arrays of a frame, {data, shape} by name. Throws for what is not ported. */
 export async function draw(device, {scene, params}) {
-    if (params.method !== "protruded") throw new Error(`method = '${params.method}': the port allows protruded`);
+    const below = BELOW.includes(params.method);
+    if (!below && params.method !== "protruded")
+        throw new Error(`method = '${params.method}': the port allows protruded, ${BELOW.join(", ")}`);
     const {gl} = device;
     const {width, height} = scene.camera;
     const nothing = [NaN, NaN, NaN, 0];
@@ -21,7 +24,7 @@ export async function draw(device, {scene, params}) {
         hit: nothing, albedo: nothing, normal: nothing});
     const clips = [], points = [];
     for (const [number, polygon] of scene.polygons.entries()) {
-        const faces = facesOf(polygon.patch_space.eye, params);
+        const faces = facesOf(polygon.patch_space.eye, below ? {...params, faces: "base"} : params);
         if (!faces.length) continue;
         const defines = definesOf(scene, params, polygon);
         const captured = await corners(device, scene, polygon, number, faces);
@@ -29,13 +32,15 @@ export async function draw(device, {scene, params}) {
             clips.push(...captured.subarray(i, i + 4));
             points.push(...captured.subarray(i + 4, i + 7));
         }
-        const program = await device.program(defines, "displacement.vert", "displacement.frag");
+        const search = `displacement_${below ? "below" : "protruded"}.frag`;
+        const program = await device.program(defines, "displacement.vert", `displacement.frag, SEARCH in ${search}`);
         gl.useProgram(program);
         uniforms(device, program, scene, polygon, number);
         const repeat = polygon.domain === "repeat";
         const maps = {height_map: polygon.height_map, color_map: polygon.color_map, normal_map: polygon.normal_map ?? UNUSED};
         const textures = Object.entries(maps).map(([name, map]) => [name, device.upload(map, {repeat})]);
         textures.push(["facade_map", device.upload(polygon.facade_map ?? UNUSED, {repeat: true})]);
+        if (polygon.cone_map) textures.push(["cone_map", device.upload(polygon.cone_map, {repeat})]);
         device.bind(program, Object.fromEntries(textures));
         gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
         gl.enable(gl.DEPTH_TEST);
@@ -70,14 +75,17 @@ function extended(eye, w) {
 
 function definesOf(scene, params, polygon) {
     const float = x => `float(${x})`;
+    const below = BELOW.includes(params.method);
     const values = {
         LINEAR_STEPS: params.linear_steps, BINARY_STEPS: params.binary_steps, SHADOW_STEPS: params.shadow_steps,
         SHADOW_BIAS: float(params.shadow_bias), STEEP_THRESHOLD: float(params.steep_threshold), EXPONENT: scene.light.exponent,
-        STAGES: 1,
+        STAGES: 1, MIN_STEPS: params.min_steps, MAX_STEPS: params.max_steps,
+        FLOOR: below && params.method !== "welsh" ? "-1.0" : "0.0",
     };
     const flags = {
-        HAS_NORMAL_MAP: polygon.normal_map, HAS_FACADE_MAP: polygon.facade_map, HAS_SPECULAR: scene.light.specular !== 0,
-        POLYGON_DEPTH: params.depth === "polygon", REPEAT: polygon.domain === "repeat", VOLUME: params.interval === "volume",
+        HAS_NORMAL_MAP: polygon.normal_map, HAS_FACADE_MAP: polygon.facade_map && !below, HAS_SPECULAR: scene.light.specular !== 0,
+        POLYGON_DEPTH: params.depth === "polygon" || params.method === "welsh", REPEAT: polygon.domain === "repeat", VOLUME: params.interval === "volume",
+        [params.method.toUpperCase()]: below,
     };
     for (const [name, present] of Object.entries(flags)) if (present) values[name] = 1;
     return Object.entries(values).map(([name, value]) => `#define ${name} ${value}\n`).join("");

@@ -16,7 +16,7 @@ export class Device {
         return this.gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : this.gl.RENDERER);
     }
 
-    /** The linked program of two files with #defines; varyings: what transform feedback hands back, nothing is drawn. */
+    /** The linked program of two files, "FILE, NAME in FILE" where one includes another, with #defines; varyings: what transform feedback hands back, nothing is drawn. */
     async program(defines, vertex, fragment, varyings = []) {
         const key = [defines, vertex, fragment, ...varyings].join("|");
         if (!this.programs.has(key)) this.programs.set(key, await this.#linked(defines, vertex, fragment, varyings));
@@ -27,7 +27,7 @@ export class Device {
         const {gl} = this;
         const program = gl.createProgram();
         for (const [type, file] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
-            const text = file === null ? "void main() {}" : await (await fetch("glsl/" + file)).text();
+            const text = file === null ? "void main() {}" : await source(file);
             const shader = gl.createShader(type);
             gl.shaderSource(shader, HEAD + defines + embedded(text, type === gl.VERTEX_SHADER));
             gl.compileShader(shader);
@@ -137,6 +137,17 @@ export class Device {
         gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.buffer(floats, gl.UNIFORM_BUFFER));
         gl.uniformBlockBinding(program, gl.getUniformBlockIndex(program, name), 0);
     }
+}
+
+/** The text of a file, with those of "NAME in FILE" in the place of its `#include NAME`. */
+async function source(words) {
+    const [file, ...parts] = words.split(", ");
+    let text = await (await fetch("glsl/" + file)).text();
+    for (const part of parts) {
+        const [name, inside] = part.split(" in ");
+        text = text.replace("#include " + name, await (await fetch("glsl/" + inside)).text());
+    }
+    return text;
 }
 
 const HEAD = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp usampler2D;\n";

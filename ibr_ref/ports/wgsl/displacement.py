@@ -1,7 +1,8 @@
 """Protruded displacement mapping in WGSL: the same inputs as `ibr_ref.displacement.render`, in float32.
 
 The scene is that of an exported case, as case_folder.py reads it; nothing else of `ibr_ref` is imported. Ported is
-method="protruded" with all intervals, domains, faces and depths, normal map, facade map and self-shadow. Each of three
+method="protruded" with all intervals, domains, faces and depths, normal map, facade map and self-shadow, and the searches
+below the polygon that there are cases of. Each of three
 passes draws all polygons with a depth buffer of its own and hands on two attachments; the depth tests come out alike, as
 the passes compute the same.
 """
@@ -24,6 +25,8 @@ PASSES = {
     "looks": (("albedo", "rgba32uint"), ("normal", "rgba32uint")),
 }
 """By entry point: attachments and their kinds."""
+SEARCHES = ("protruded", "relief", "mcguire", "tatarchuk", "welsh", "cone", "relaxed_cone")
+"""By their numbers in the shader."""
 CORNERS = gpu.Vertices(16, [("float32x3", 0), ("sint32", 12)])
 
 
@@ -46,8 +49,8 @@ class Port:
 
     def render(self, scene: Any, params: Any) -> Frame:
         """One frame with all stages, read back. Raises ValueError for what is not ported."""
-        if params.method != "protruded":
-            raise ValueError(f"method = {params.method!r}: the port allows protruded")
+        if params.method not in SEARCHES:
+            raise ValueError(f"method = {params.method!r}: the port allows {', '.join(SEARCHES)}")
         frames = [PatchFrame.of(polygon, scene) for polygon in scene.polygons]
         draws = [draw for number, frame in enumerate(frames) if (draw := self._draw(frame, number, params)) is not None]
         width, height = int(scene.camera.width), int(scene.camera.height)
@@ -70,16 +73,18 @@ class Port:
 
     def _draw(self, frame: PatchFrame, number: int, params: Any) -> _Draw | None:
         """Buffers, textures and code of one polygon; None: no face of it is drawn."""
-        faces = frame.faces(params.faces, params.interval)
+        faces = frame.faces(params.faces if params.method == "protruded" else "base", params.interval)
         if not len(faces):
             return None
         device, polygon, unused = self.device, frame.polygon, np.zeros((1, 1, 3))
         maps = [polygon.height_map, polygon.color_map, polygon.normal_map, polygon.facade_map]
         resources: dict[int, Any] = {0: gpu.buffer(device, frame.uniforms(number), wgpu.BufferUsage.UNIFORM)}
         resources |= {i: gpu.upload(device, unused if m is None else m) for i, m in enumerate(maps, 1)}
+        cones = getattr(polygon, "cone_map", None)
+        resources[7] = gpu.upload(device, unused if cones is None else cones)
         quads = 4 * np.arange(len(faces))[:, None] + np.array([0, 1, 2, 0, 2, 3])
         return _Draw(
-            code=_constants(frame, params) + gpu.source("displacement.wgsl"),
+            code=_constants(frame, params) + gpu.source("displacement.wgsl") + gpu.source("displacement_below.wgsl"),
             resources=resources,
             faces=faces,
             vertices=gpu.buffer(device, faces.tobytes(), wgpu.BufferUsage.VERTEX),
@@ -117,7 +122,7 @@ class Port:
 
 def _constants(frame: PatchFrame, params: Any) -> str:
     """`params` and the shape of the scene."""
-    polygon = frame.polygon
+    polygon, above = frame.polygon, params.method == "protruded"
     return gpu.constants(
         {
             "LINEAR_STEPS": int(params.linear_steps),
@@ -127,8 +132,13 @@ def _constants(frame: PatchFrame, params: Any) -> str:
             "STEEP_THRESHOLD": float(params.steep_threshold),
             "EXPONENT": int(frame.scene.light.exponent),
             "HAS_NORMAL_MAP": polygon.normal_map is not None,
-            "HAS_FACADE_MAP": polygon.facade_map is not None,
-            "POLYGON_DEPTH": params.depth == "polygon",
+            "HAS_FACADE_MAP": polygon.facade_map is not None and above,
+            "POLYGON_DEPTH": params.depth == "polygon" or params.method == "welsh",
+            "FLOOR": 0.0 if above or params.method == "welsh" else -1.0,
+            "MIN_STEPS": int(params.min_steps),
+            "MAX_STEPS": int(params.max_steps),
+            "SEARCH": SEARCHES.index(params.method),
+            **{name.upper(): number for number, name in enumerate(SEARCHES)},
             "REPEAT": polygon.domain == "repeat",
             "VOLUME": params.interval == "volume",
         }

@@ -1,6 +1,7 @@
 // Protruded displacement mapping: vertex stage, march, shading, depth of the hit. Constants are put in front by displacement.py:
 //   LINEAR_STEPS, BINARY_STEPS, SHADOW_STEPS, SHADOW_BIAS, STEEP_THRESHOLD, EXPONENT
 //   HAS_NORMAL_MAP, HAS_FACADE_MAP, POLYGON_DEPTH, REPEAT, VOLUME
+//   SEARCH, and the numbers of the searches: PROTRUDED, and those of displacement_below.wgsl; FLOOR, h of the volume's bottom
 // One picture is drawn by three passes of the same computation, which differ in what they hand on.
 
 struct Polygon {
@@ -221,14 +222,15 @@ fn is_lit(hit: vec3f) -> bool {
     if (p.light_patch.z <= 0.0) { return false; }       // below the polygon's horizon
     let towards = p.light_patch.xyz - p.light_patch.w * hit;
     let moving = select(towards, vec3f(1e-30), abs(towards) < vec3f(1e-30));
-    let leave = max(-hit / moving, (1.0 - hit) / moving);
+    let raised = hit - vec3f(0.0, 0.0, FLOOR);
+    let leave = max(-raised / moving, (1.0 - raised) / moving);
     var stretch = leave.z;
     if (!REPEAT) { stretch = min(min(leave.x, leave.y), leave.z); }
     if (p.light_patch.w != 0.0) { stretch = min(stretch, 1.0); }
     if (!(stretch > 0.0)) { return true; }
     let path = towards * stretch;
     for (var j = 1; j <= SHADOW_STEPS; j++) {
-        let point = hit + path * (f32(j) / f32(SHADOW_STEPS + 1));
+        let point = raised + path * (f32(j) / f32(SHADOW_STEPS + 1));
         if (point.z + SHADOW_BIAS < height(point.xy)) { return false; }
     }
     return true;
@@ -266,7 +268,8 @@ struct Fragment {
 }
 
 fn fragment(corner: Corner) -> Fragment {
-    let hit = march(corner.point);
+    var hit: Hit;
+    if (SEARCH == PROTRUDED) { hit = march(corner.point); } else { hit = march_below(corner.point); }
     let clip = p.clip_from_patch * vec4f(hit.position, 1.0);
     let kept = hit.found && clip.z >= 0.0;
     var depth = MISS_DEPTH;
