@@ -13,7 +13,7 @@ import typer
 
 from ibr_ref.cli import app
 from ibr_ref.cli.command import refuse
-from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, table
+from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, rules, table
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
 
@@ -35,7 +35,7 @@ def defaults(command: Any) -> dict[str, Any]:
 def modes(name: str) -> Iterator[dict[str, Any]]:
     """All combinations of the values that any rule of a command asks for, and of one more each."""
     seen: dict[str, set[Any]] = {}
-    for rule in table()[name].values():
+    for rule in rules(name).values():
         for alternative in rule.alternatives:
             for other, wanted in alternative.items():
                 values = wanted if isinstance(wanted, tuple) else () if wanted in (GIVEN, ABSENT) else (wanted,)
@@ -51,7 +51,7 @@ def modes(name: str) -> Iterator[dict[str, Any]]:
 
 def refusal(name: str, values: dict[str, Any], given: str) -> str | None:
     try:
-        refuse(table()[name], COMMANDS[name].params, values, {given})
+        refuse(rules(name), COMMANDS[name].params, values, {given})
     except typer.BadParameter as error:
         return str(error)
     return None
@@ -60,9 +60,9 @@ def refusal(name: str, values: dict[str, Any], given: str) -> str | None:
 def test_every_parameter_of_every_command_is_in_the_table() -> None:
     assert set(table()) == set(COMMANDS)
     for name, command in COMMANDS.items():
-        assert set(table()[name]) == {param.name for param in command.params}, name
-        for rule in table()[name].values():
-            assert all(set(alternative) <= set(table()[name]) for alternative in rule.alternatives), name
+        assert set(rules(name)) == {param.name for param in command.params}, name
+        for rule in rules(name).values():
+            assert all(set(alternative) <= set(rules(name)) for alternative in rule.alternatives), name
 
 
 def test_view_has_the_rules_of_render() -> None:
@@ -82,7 +82,7 @@ def test_every_option_beside_every_mode(name: str) -> None:
     for mode in modes(name):
         values = {**defaults(command), **mode}
         for param in command.params:
-            rule = table()[name][param.name]
+            rule = rules(name)[param.name]
             if param.name not in mode:
                 values[param.name] = values[param.name] or "x"
             read = not rule.alternatives or any(
@@ -103,7 +103,7 @@ def test_every_option_beside_every_mode(name: str) -> None:
                 assert rule.why in said
             outcomes.setdefault(param.name, set()).add(said is not None)
     for param, found in outcomes.items():
-        assert found == ({True, False} if table()[name][param].alternatives else {False}), param
+        assert found == ({True, False} if rules(name)[param].alternatives else {False}), param
 
 
 HEIGHT = ("render", "displacement", "--height", "h.png", "--out", "a.png")
