@@ -49,6 +49,7 @@ def probe_case() -> Case:
     polygons = []
     for row, column in np.ndindex(GRID[1], GRID[0]):
         corner = np.array([column + 0.1, row + 0.1]) + random.uniform(0.0, 0.15, 2)
+        # Any edges that are no multiples of a subpixel.
         u, v = np.array([[0.6, 0.1], [-0.1, 0.6]]) + random.uniform(-0.04, 0.04, (2, 2))
         polygons.append(
             BasePolygon(
@@ -57,7 +58,7 @@ def probe_case() -> Case:
                 edge_v=(*v, 0.0),
                 height_map=random.integers(60, 200, (6, 6)) / 255.0,
                 color_map=random.integers(0, 256, (7, 5, 3)) / 255.0,
-                height_scale=0.05,
+                height_scale=0.05,  # flat enough that no hit lies beside its polygon
             )
         )
     camera = Camera.orthographic(
@@ -184,6 +185,7 @@ def _depth(depth: Floats) -> Found:
     drawn = depth[depth < 1.0]
     for name, most in (("unorm16", 2.0**16 - 1.0), ("unorm24", 2.0**24 - 1.0)):
         steps = most * drawn
+        # Of a step: float32 is that near to whole ones only where depths are stored in them.
         if len(drawn) and np.abs(steps - np.rint(steps)).max() < (1e-2 if name == "unorm16" else 0.02):
             return {"depth_format": (name, f"every depth is a multiple of 1/{int(most)}")}
     return {"depth_format": ("float32", "depths are no multiples of a step")} if len(drawn) else {}

@@ -140,7 +140,7 @@ def local_cluster(distributed: Any, count: int | None) -> Any:
         n_workers=workers,
         threads_per_worker=1,
         processes=True,
-        dashboard_address=None,
+        dashboard_address=":0",
         silence_logs=logging.CRITICAL,
         env={"NUMBA_NUM_THREADS": str(max(1, processors // workers)), **_THREADS},
     )

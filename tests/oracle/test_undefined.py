@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 from ibr_ref.array_types import Floats
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.cases import Case, build, names
-from ibr_ref.oracle.faults import displacement
-from ibr_ref.oracle.ports import shadows, splatting
+from ibr_ref.oracle.faults import displacement, splatting
+from ibr_ref.oracle.ports import shadows
 from ibr_ref.oracle.undefined import UNDEFINED
 from ibr_ref.scene import Light
 
@@ -98,8 +98,10 @@ def met(case: Case) -> dict[str, int]:
     port: Any
     if case.method == "splatting":
         watched = Watched(policy)
-        with np.errstate(all="ignore"):
-            splatting.Port(case.scene, case.params, policy, case.inputs)._arrays(watched, case.scene, case.params)
+        made: Any = splatting.Port.preparation
+        preparation = type("WatchedPreparation", (made,), {"on": lambda self, do: made.on(self, watched)})
+        kind: Any = type("WatchedSplatting", (splatting.Port,), {"preparation": preparation})
+        kind(case.scene, case.params, policy, case.inputs).on(watched).render()
         return dict(watched.met)
     if case.method == "displacement":
         port = _Displacement(case.scene, case.params, policy, case.inputs)

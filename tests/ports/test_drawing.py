@@ -57,7 +57,7 @@ def test_the_timed_shadows_are_nearly_the_same(name: str, device: Any) -> None:
 
 @pytest.mark.parametrize(
     ("name", "method"),
-    [("displacement-box", "relief"), ("shadows-direct", "grid")],
+    [("displacement-box", "donnelly"), ("shadows-direct", "grid")],
 )
 def test_what_is_not_ported_is_refused_with_its_feature(name: str, method: str, device: Any) -> None:
     from ibr_ref.ports.described import described
@@ -74,9 +74,9 @@ def test_from_the_command_line(device: Any, tmp_path: Path) -> None:
     """Two folders; one line and no folder for what is not ported, or is no case."""
     box = oracle.build("displacement-box")
     oracle.export(box, tmp_path / "box")
-    oracle.export(box, tmp_path / "relief")
-    document = tmp_path / "relief" / "case.json"
-    document.write_text(document.read_text("utf-8").replace('"method": "protruded"', '"method": "relief"'), "utf-8")
+    oracle.export(box, tmp_path / "other")
+    document = tmp_path / "other" / "case.json"
+    document.write_text(document.read_text("utf-8").replace('"method": "protruded"', '"method": "donnelly"'), "utf-8")
 
     def run(case: str) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "-m", "ibr_ref.ports", str(tmp_path / case), str(tmp_path / "port" / case)]
@@ -86,10 +86,13 @@ def test_from_the_command_line(device: Any, tmp_path: Path) -> None:
     names = {path.name for path in (tmp_path / "port" / "box").iterdir()}
     assert {"color.npy", "depth.npy", "march.hit_index.npy", "vertex.clip.npy", "port.json"} <= names
     assert np.load(tmp_path / "port" / "box" / "march.hit_index.npy").dtype == np.int32
-    refused = run("relief")
+    refused = run("other")
     assert refused.returncode == 1
-    assert refused.stderr.strip() == "displacement-box is not ported: method = 'relief': the port allows protruded"
-    assert not (tmp_path / "port" / "relief").exists()
+    assert refused.stderr.strip() == (
+        "displacement-box is not ported: method = 'donnelly': the port allows protruded, relief, welsh, mcguire, "
+        "tatarchuk, cone, relaxed_cone"
+    )
+    assert not (tmp_path / "port" / "other").exists()
     nowhere = run("nowhere")
     assert nowhere.returncode == 1
     assert "nowhere: is no case" in nowhere.stderr

@@ -91,7 +91,7 @@ def test_the_clip_volume_of_opengl_passes(name: str, minus_one: Any, tmp_path: P
 BROKEN = {
     "the threshold on the wrong difference": (
         "displacement-slope",
-        "displacement.frag",
+        "displacement_protruded.frag",
         ("hit.position.z - hit.before > STEEP_THRESHOLD", "hit.before - hit.position.z > STEEP_THRESHOLD"),
         "march",
     ),
