@@ -72,9 +72,13 @@ def test_hits_shades_and_colours(port: Port) -> None:
     shades, lost = shades_of(model, hits)
     assert not len(lost)
     same = port.agreement("shade.lit", shades.pixel, shades.lit)
+    # A slope at the least difference that counts: of each outcome the value is in the middle of what is decided of it.
+    several = np.bincount(shades.pixel)[shades.pixel] > 1
     for name in ("albedo", "normal"):
-        theirs = port.floats(f"shade.{name}")[shades.pixel]
-        same &= (abs(values(getattr(shades, name)) - theirs) <= ROUNDING).all(axis=1)
+        theirs, ours = port.floats(f"shade.{name}")[shades.pixel], getattr(shades, name)
+        close = (abs(values(ours) - theirs) <= ROUNDING).all(axis=1)
+        within = np.all([x.allows(theirs[:, k]) for k, x in enumerate(ours)], axis=0)
+        same &= close | (several & within)
     assert set(shades.pixel[same]) == set(np.flatnonzero(port.ints("march.hit_index") >= 0))
     surfaces = light_input(port, hits, shades)
     index, color, lost = lighted(model, hits, surfaces)
