@@ -70,3 +70,23 @@ def test_numbers_become_constants() -> None:
 
     lines = gpu.constants({"STEPS": 4, "BIAS": 1e-3, "LIT": True})
     assert lines == "const STEPS: i32 = 4;\nconst BIAS: f32 = 0.001;\nconst LIT: bool = true;\n"
+
+
+def test_the_opengl_port_goes_on_beside_it() -> None:
+    """WebGPU on OpenGL leaves a context of its own behind as the current one."""
+    pytest.importorskip("wgpu", reason="wgpu, with which the ports draw, is not installed")
+    pytest.importorskip("moderngl", reason="moderngl, with which the ports draw, is not installed")
+    from ibr_ref.ports.described import described
+    from ibr_ref.ports.drawing import drawn
+    from ibr_ref.ports.glsl import gl
+    from ibr_ref.ports.wgsl import gpu
+
+    try:
+        opengl, webgpu = gl.create_device(), gpu.create_device("opengl")
+    except Exception as error:  # of moderngl, or of the loader that looks for EGL
+        pytest.skip(str(error))
+    case = oracle.build("displacement-box")
+    given = described(case.method, case.scene, case.params)
+    before = drawn(given, "glsl", opengl)
+    drawn(given, "wgsl", webgpu)
+    assert (drawn(given, "glsl", opengl).depth == before.depth).all()

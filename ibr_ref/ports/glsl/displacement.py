@@ -120,6 +120,7 @@ class Port:
         `packed`: the height texture holds four neighbours a texel, read by one texelFetch and mixed in the shader, instead
         of the sampler's linear filter: four times the memory, up to 15 % faster on llvmpipe.
         """
+        self.device.use()
         _check(scene, params, packed)
         attachments = STAGES if stages else FAST
         target = gl.create_target(self.device, int(scene.camera.width), int(scene.camera.height), attachments)

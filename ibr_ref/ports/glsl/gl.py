@@ -61,7 +61,7 @@ class Entry:
 
 @dataclass
 class Device:
-    """A context that is current on this thread, and what it turned out to be."""
+    """A context of its own, and what it turned out to be."""
 
     ctx: moderngl.Context
     entry: Entry
@@ -72,6 +72,10 @@ class Device:
     def renderer(self) -> str:
         """GL_RENDERER and GL_VERSION in one line."""
         return f"{self.ctx.info['GL_RENDERER']}, {self.ctx.info['GL_VERSION']}"
+
+    def use(self) -> None:
+        """Make its context current: another one of this process may be, such as that of WebGPU on OpenGL."""
+        self.ctx.__enter__()
 
 
 def source(name: str) -> str:
@@ -97,6 +101,7 @@ def upload(
     `dtype` is moderngl's: "f4" keeps 32-bit floats; "f1" stores floor(255 c + 0.5) as 8-bit unorm. Three channels are padded
     to four. `wrap` is "clamp" (to the edge) or "repeat". There is no mip chain.
     """
+    device.use()
     image = np.asarray(image, dtype=np.float64)
     channels = 1 if image.ndim == 2 else image.shape[2]
     if channels == 3:
@@ -122,6 +127,7 @@ class Target:
 
     def begin(self) -> None:
         """Bind, and clear every attachment to its own value, depth to 1."""
+        self.device.use()
         self.fbo.use()
         for index, (name, texture) in enumerate(self.textures.items()):
             values = tuple(self.clears.get(name, (0.0,))) * 4
@@ -135,6 +141,7 @@ class Target:
 
     def read(self, name: str) -> np.ndarray:
         """(H, W, channels) of one attachment; row 0 is the first row in memory: the top, as the ports negate clip y."""
+        self.device.use()
         texture = self.textures[name]
         numbers = {"f1": np.uint8, "f4": np.float32, "i4": np.int32}[texture.dtype]
         array = np.frombuffer(texture.read(alignment=1), dtype=numbers)
@@ -142,6 +149,7 @@ class Target:
 
     def read_depth(self) -> np.ndarray:
         """(H, W) float32 window depth."""
+        self.device.use()
         depth = np.empty((self.fbo.height, self.fbo.width), dtype=np.float32)
         self.device.entry.glGetTextureImage(
             self.depth_id, 0, GL_DEPTH_COMPONENT, GL_FLOAT, depth.nbytes, depth.ctypes.data
@@ -150,6 +158,7 @@ class Target:
 
     def release(self) -> None:
         """Give the attachments back to the driver."""
+        self.device.use()
         self.fbo.release()
         for texture in self.textures.values():
             texture.release()
@@ -158,6 +167,7 @@ class Target:
 
 def create_target(device: Device, width: int, height: int, attachments: Mapping[str, tuple[int, str]]) -> Target:
     """A target whose colour attachments are `name: (channels, moderngl dtype)` in the order of the shader's locations."""
+    device.use()
     textures = {
         name: device.ctx.texture((width, height), channels, dtype=dtype)
         for name, (channels, dtype) in attachments.items()

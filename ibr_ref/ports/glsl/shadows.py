@@ -57,6 +57,7 @@ class Prepared:
 
     def draw(self) -> None:
         """Submit a frame."""
+        self.device.use()
         self._draw_surface()
         self.accumulated.begin()
         for sample in self.scene.light_samples:
@@ -70,6 +71,7 @@ class Prepared:
 
     def draw_maps(self) -> None:
         """The maps of all samples alone."""
+        self.device.use()
         for sample in self.scene.light_samples:
             self._draw_map(sample)
 
@@ -210,6 +212,7 @@ class Port:
 
         Raises ValueError for methods and maps that are not ported.
         """
+        self.device.use()
         _check(params)
         ctx, camera = self.device.ctx, scene.camera
         size = int(camera.width), int(camera.height)

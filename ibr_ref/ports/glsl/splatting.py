@@ -121,6 +121,7 @@ class Port:
         primitive: None for point sprites where the driver has all widths, otherwise quads. Raises ValueError for what is
         not ported.
         """
+        self.device.use()
         sizes = self.device.ctx.info["GL_POINT_SIZE_RANGE"]
         if primitive is None:
             primitive = "points" if sizes[0] <= params.min_width <= params.max_width <= sizes[1] else "quads"
