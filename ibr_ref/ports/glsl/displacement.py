@@ -15,6 +15,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
+from ibr_ref.ports.displacement_arrays import stage_arrays
 from ibr_ref.ports.glsl import gl
 from ibr_ref.ports.glsl.patch_frame import PatchFrame
 
@@ -77,7 +78,7 @@ class Prepared:
         depth = self.target.read_depth()
         if not self.stages:
             return gl.Frame(color=color, depth=depth.astype(np.float64))
-        shown = _stage_arrays(self.target)
+        shown = stage_arrays(*map(self.target.read, ("index", "patch", "hit", "albedo", "normal")))
         depth = np.where(shown["march.hit_index"] < 0, 1.0, depth.astype(np.float64))
         return gl.Frame(color=color, depth=depth, stages=self.vertices | shown)
 
@@ -255,27 +256,6 @@ def _packed(heights: np.ndarray) -> np.ndarray:
     """(H + 1, W + 1, 4): at (i, j) the texels (i − 1, j − 1), (i − 1, j), (i, j − 1), (i, j), clamped to the edge."""
     padded = np.pad(np.asarray(heights, float), 1, mode="edge")
     return np.stack([padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]], axis=2)
-
-
-def _stage_arrays(target: gl.Target) -> dict[str, np.ndarray]:
-    """The attachments under the specification's names, with its values of "nothing here"."""
-    index, patch, hit = target.read("index"), target.read("patch"), target.read("hit")
-    albedo, normal = target.read("albedo"), target.read("normal")
-    covered, kept = index[..., 0] >= 0, index[..., 3] >= 0
-    nothing = np.float32(np.nan)
-    return {
-        "raster.face": index[..., 0].copy(),
-        "raster.patch_id": index[..., 1].copy(),
-        "raster.patch": patch[..., :3].copy(),
-        "march.linear_index": index[..., 2].copy(),
-        "march.hit_index": index[..., 3].copy(),
-        "march.hit": np.where(kept[..., None], hit[..., :3], nothing),
-        "march.height_before": np.where(covered, hit[..., 3], nothing),
-        "march.steep": kept & (normal[..., 3] > 0.5),
-        "shade.albedo": np.where(kept[..., None], albedo[..., :3], nothing),
-        "shade.normal": np.where(kept[..., None], normal[..., :3], nothing),
-        "shade.lit": kept & (albedo[..., 3] > 0.5),
-    }
 
 
 def _check(scene: Any, params: Any, packed: bool) -> None:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import wgpu
 
+from ibr_ref.ports.displacement_arrays import stage_arrays
 from ibr_ref.ports.frame import Frame
 from ibr_ref.ports.glsl.patch_frame import PatchFrame
 from ibr_ref.ports.wgsl import gpu
@@ -67,7 +68,7 @@ class Port:
                 found[name] = read(self.device, each)
             if entry == "picture":
                 found["depth"] = gpu.read_depth(self.device, depth).astype(np.float64)
-        stages = _stages(found)
+        stages = stage_arrays(*(found[name] for name in ("index", "patch", "hit", "albedo", "normal")))
         depths = np.where(stages["march.hit_index"] < 0, 1.0, found["depth"])
         return Frame(found["color"][..., :3].astype(np.float64), depths, self._vertices(draws) | stages)
 
@@ -84,7 +85,8 @@ class Port:
         resources[7] = gpu.upload(device, unused if cones is None else cones)
         quads = 4 * np.arange(len(faces))[:, None] + np.array([0, 1, 2, 0, 2, 3])
         return _Draw(
-            code=_constants(frame, params) + gpu.source("displacement.wgsl") + gpu.source("displacement_below.wgsl"),
+            code=_constants(frame, params)
+            + gpu.source("lighting.wgsl", "displacement.wgsl", "displacement_below.wgsl"),
             resources=resources,
             faces=faces,
             vertices=gpu.buffer(device, faces.tobytes(), wgpu.BufferUsage.VERTEX),
@@ -143,22 +145,3 @@ def _constants(frame: PatchFrame, params: Any) -> str:
             "VOLUME": params.interval == "volume",
         }
     )
-
-
-def _stages(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The attachments under the specification's names, with its values of "nothing here"."""
-    index, patch, hit, albedo, normal = (found[name] for name in ("index", "patch", "hit", "albedo", "normal"))
-    covered, kept, nothing = index[..., 0] >= 0, index[..., 3] >= 0, np.float32(np.nan)
-    return {
-        "raster.face": index[..., 0].copy(),
-        "raster.patch_id": index[..., 1].copy(),
-        "raster.patch": np.where(covered[..., None], patch[..., :3], nothing),
-        "march.linear_index": index[..., 2].copy(),
-        "march.hit_index": index[..., 3].copy(),
-        "march.hit": np.where(kept[..., None], hit[..., :3], nothing),
-        "march.height_before": np.where(covered, hit[..., 3], nothing),
-        "march.steep": kept & (normal[..., 3] > 0.5),
-        "shade.albedo": np.where(kept[..., None], albedo[..., :3], nothing),
-        "shade.normal": np.where(kept[..., None], normal[..., :3], nothing),
-        "shade.lit": kept & (albedo[..., 3] > 0.5),
-    }

@@ -91,11 +91,6 @@ struct Hit {
     steep: bool,
 }
 
-fn unit(a: vec3f) -> vec3f {
-    let square = dot(a, a);
-    return select(a, a / sqrt(square), square > 0.0);
-}
-
 /// The first and the last t at which origin + direction t is in the unit square.
 fn inside_square(origin: vec2f, direction: vec2f) -> vec2f {
     let moving = select(direction, vec2f(1e-30), abs(direction) < vec2f(1e-30));
@@ -234,17 +229,6 @@ fn is_lit(hit: vec3f) -> bool {
         if (point.z + SHADOW_BIAS < height(point.xy)) { return false; }
     }
     return true;
-}
-
-/// base to the power EXPONENT by repeated squaring.
-fn power(number: f32) -> f32 {
-    var base = number;
-    var result = 1.0;
-    for (var e = EXPONENT; e > 0; e >>= 1u) {
-        if ((e & 1) == 1) { result *= base; }
-        base *= base;
-    }
-    return result;
 }
 
 fn shade(world: vec3f, made: Surface, lit: f32) -> vec3f {

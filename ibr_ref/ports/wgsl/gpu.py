@@ -67,9 +67,9 @@ def create_device(adapter: str | None = None) -> Device:
     return Device(fit[0], fit[0].request_device_sync())
 
 
-def source(name: str) -> str:
-    """The WGSL of a file beside this one."""
-    return (Path(__file__).parent / name).read_text(encoding="utf-8")
+def source(*names: str) -> str:
+    """The WGSL of files beside this one, one after the other."""
+    return "".join((Path(__file__).parent / name).read_text(encoding="utf-8") for name in names)
 
 
 def constants(values: Mapping[str, object]) -> str:

@@ -45,7 +45,7 @@ class Port:
             "EXPONENT": 0 if light is None else int(light.exponent),
             "DISC": params.shape == "disc",
         }
-        code = gpu.constants(constants) + gpu.source("splatting.wgsl")
+        code = gpu.constants(constants) + gpu.source("lighting.wgsl", "splatting.wgsl")
         draws: list[_Draw] = []
         for image in scene.images:
             draws.append(self._image(scene, params, image, first=sum(len(draw.pixels) for draw in draws)))

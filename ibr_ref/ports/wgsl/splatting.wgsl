@@ -28,11 +28,6 @@ struct Splat {
     color: vec3f,
 }
 
-fn unit(a: vec3f) -> vec3f {
-    let square = dot(a, a);
-    return select(a, a / sqrt(square), square > 0.0);
-}
-
 /// The centre of the pixel in the reference camera's view space.
 fn unproject(pixel: vec2u, along_axis: f32) -> vec3f {
     let centre = vec2f(pixel) + 0.5;
@@ -46,17 +41,6 @@ fn unproject(pixel: vec2u, along_axis: f32) -> vec3f {
 fn splat_width(world: vec3f, view: vec3f) -> f32 {
     let d = select(-view.z, distance(world, s.eye.xyz), s.lens.z != 0.0);
     return clamp(s.law.x / (s.law.y * (d * d) + s.law.z * d + s.law.w), s.limits.x, s.limits.y);
-}
-
-/// base to the power EXPONENT by repeated squaring.
-fn power(number: f32) -> f32 {
-    var base = number;
-    var result = 1.0;
-    for (var e = EXPONENT; e > 0; e >>= 1u) {
-        if ((e & 1) == 1) { result *= base; }
-        base *= base;
-    }
-    return result;
 }
 
 fn shade(world: vec3f, normal: vec3f, albedo: vec3f) -> vec3f {
