@@ -13,17 +13,17 @@ import re
 import secrets
 import threading
 from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import ThreadingHTTPServer
 from importlib.resources import files
 from pathlib import Path
 from typing import NamedTuple
-from urllib.parse import unquote, urlsplit
+from urllib.parse import unquote
 
+from ibr_ref.loopback import LOOPBACK, Handler
 from ibr_ref.scene import checks
 from ibr_ref.testing.judging import PortError
 from ibr_ref.testing.ports import LONGEST
 
-LOOPBACK = "127.0.0.1"
 POLL = 5.0
 """Seconds that a question for the next case may wait; then it is asked again."""
 MOST_BYTES = 2**28
@@ -120,13 +120,10 @@ class _Server(ThreadingHTTPServer):
         super().__init__((LOOPBACK, port), _Handler)
 
 
-class _Handler(BaseHTTPRequestHandler):
+class _Handler(Handler):
     server: _Server
-    protocol_version = "HTTP/1.1"
-    disable_nagle_algorithm = True  # headers and body are two writes
-    wbufsize = -1
 
-    def do_GET(self) -> None:
+    def do_GET(self) -> None:  # noqa: N802 - as http.server calls it
         """The next case, a file of it, or the module."""
         place = self._place()
         if place == "next":
@@ -139,14 +136,12 @@ class _Handler(BaseHTTPRequestHandler):
         else:
             self._send(HTTPStatus.NOT_FOUND)
 
-    def do_POST(self) -> None:
+    def do_POST(self) -> None:  # noqa: N802 - as http.server calls it
         """A file of the drawing, or its end."""
-        place, length = self._place(), self.headers.get("Content-Length", "")
-        if not length.isascii() or not length.isdigit() or int(length) > MOST_BYTES:
-            self.close_connection = True
+        place, body = self._place(), self.body(MOST_BYTES)
+        if body is None:
             self._send(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
             return
-        body = self.rfile.read(int(length))
         what, _, rest = (place or "").partition("/")
         number, _, name = rest.partition("/")
         work = self.server.door.work_of(number)
@@ -161,7 +156,7 @@ class _Handler(BaseHTTPRequestHandler):
         else:
             self._send(HTTPStatus.NOT_FOUND)
 
-    def do_OPTIONS(self) -> None:
+    def do_OPTIONS(self) -> None:  # noqa: N802 - as http.server calls it
         """Browsers ask first whether they may."""
         self._send(HTTPStatus.NO_CONTENT)
 
@@ -176,32 +171,17 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(HTTPStatus.OK, path.read_bytes(), "application/octet-stream")
 
     def _place(self) -> str | None:
-        """What follows the token; None for whoever does not know it, or came by another name, as a site of the net might."""
-        hosts = {f"{host}:{self.server.server_port}" for host in (LOOPBACK, "localhost")}
-        parts = urlsplit(self.path).path.split("/", 2)
-        if len(parts) != 3 or self.headers.get("Host") not in hosts:
-            return None
-        return unquote(parts[2]) if secrets.compare_digest(parts[1].encode(), self.server.door.token.encode()) else None
+        place = self.place(self.server.door.token)
+        return None if place is None else unquote(place)
 
     def _send(self, status: HTTPStatus, body: bytes = b"", kind: str = "text/plain") -> None:
-        self.send_response(status)
-        for name, value in {
+        open_to_pages = {
             "Content-Type": kind,
-            "Content-Length": str(len(body)),
             "Access-Control-Allow-Origin": "*",
             "Access-Control-Allow-Methods": "GET, POST",
             "Access-Control-Allow-Headers": "Content-Type",
             "Access-Control-Allow-Private-Network": "true",
             "Cross-Origin-Resource-Policy": "cross-origin",
             "Cache-Control": "no-store",
-        }.items():
-            self.send_header(name, value)
-        self.end_headers()
-        try:
-            self.wfile.write(body)
-            self.wfile.flush()
-        except OSError:  # whoever asked has gone
-            self.close_connection = True
-
-    def log_message(self, format: str, *arguments: object) -> None:  # noqa: A002 - as it is overridden
-        """Nothing."""
+        }
+        self.reply(status, body, open_to_pages)

@@ -11,17 +11,15 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from functools import cache
 from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import ThreadingHTTPServer
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
-from urllib.parse import urlsplit
 
 from ibr_ref.io.images import png_bytes
+from ibr_ref.loopback import LOOPBACK, Handler
 from ibr_ref.scene import checks
 from ibr_ref.viewer.session import Session
-
-LOOPBACK = "127.0.0.1"
 
 MOST_BYTES = 2**16
 """Of a question: a state of the page."""
@@ -77,29 +75,24 @@ class Server(ThreadingHTTPServer):
         self.worker.shutdown(wait=False, cancel_futures=True)
 
 
-class _Handler(BaseHTTPRequestHandler):
+class _Handler(Handler):
     server: Server
-    protocol_version = "HTTP/1.1"
-    disable_nagle_algorithm = True  # headers and body are two writes
-    wbufsize = -1
 
-    def do_GET(self) -> None:
+    def do_GET(self) -> None:  # noqa: N802 - as http.server calls it
         """The page and its files."""
-        name = self._name()
+        name = self.place(self.server.token)
         if name not in _PAGES:
             self._refuse(HTTPStatus.NOT_FOUND, "no such page")
         else:
             file, kind = _PAGES[name]
             self._send(HTTPStatus.OK, Answer(_asset(file), kind))
 
-    def do_POST(self) -> None:
+    def do_POST(self) -> None:  # noqa: N802 - as http.server calls it
         """What the page asks: a state of it, as JSON."""
-        name, length = self._name(), self.headers.get("Content-Length", "")
-        if not length.isascii() or not length.isdigit() or int(length) > MOST_BYTES:
-            self.close_connection = True
+        name, body = self.place(self.server.token), self.body(MOST_BYTES)
+        if body is None:
             self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"at most {MOST_BYTES} bytes")
             return
-        body = self.rfile.read(int(length))
         if name not in _ANSWERS:
             self._refuse(HTTPStatus.NOT_FOUND, "no such page")
             return
@@ -115,38 +108,18 @@ class _Handler(BaseHTTPRequestHandler):
                 raise
             self.close_connection = True  # nobody draws any more
 
-    def _name(self) -> str | None:
-        """What follows the token; None for whoever does not know it, or came by another name, as a site of the net might."""
-        hosts = {f"{host}:{self.server.server_port}" for host in (LOOPBACK, "localhost")}
-        parts = urlsplit(self.path).path.split("/", 2)
-        if len(parts) != 3 or self.headers.get("Host") not in hosts:
-            return None
-        return parts[2] if secrets.compare_digest(parts[1].encode(), self.server.token.encode()) else None
-
     def _refuse(self, status: HTTPStatus, why: str) -> None:
         self._send(status, Answer(json.dumps({"error": why}).encode()))
 
     def _send(self, status: HTTPStatus, answer: Answer) -> None:
-        self.send_response(status)
         fixed = {
             "Content-Type": answer.kind,
-            "Content-Length": str(len(answer.body)),
             "Content-Security-Policy": _POLICY,
             "Cache-Control": "no-store",
             "Referrer-Policy": "no-referrer",
             "X-Content-Type-Options": "nosniff",
         }
-        for name, value in {**fixed, **answer.headers}.items():
-            self.send_header(name, value)
-        self.end_headers()
-        try:
-            self.wfile.write(answer.body)
-            self.wfile.flush()
-        except OSError:  # whoever asked has gone
-            self.close_connection = True
-
-    def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002 - as it is overridden
-        """Nothing: a line for every frame would be many."""
+        self.reply(status, answer.body, {**fixed, **answer.headers})
 
 
 @cache
