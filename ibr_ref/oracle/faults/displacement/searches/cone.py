@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from ibr_ref.displacement.cone_maps import cone_map_of
 from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Patch
 from ibr_ref.oracle.programs.displacement.searches.cone import Cone, RelaxedCone
@@ -104,7 +105,4 @@ class _OtherCones(Cone):
     others: ClassVar[dict[str, str]] = {"cone": "relaxed_cone", "relaxed_cone": "cone"}
 
     def ratios(self, patch: Patch) -> Floats:
-        own, self.cones = self.cones, self.others[self.cones]  # type: ignore[misc]
-        found = super().ratios(patch)
-        self.cones = own  # type: ignore[misc]
-        return found
+        return self.do.number(cone_map_of(self.scene.polygons[patch.number], self.others[self.cones]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
+
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
@@ -19,9 +21,9 @@ class _OtherCount(McGuire):
     def count(self, patch: Patch, rays: Rays) -> Floats:
         return np.asarray(self.do.whole(self.do.in_lanes(self.steps(patch, rays), rays.start[0])))
 
+    @abstractmethod
     def steps(self, patch: Patch, rays: Rays) -> Floats:
         """Before what is left of it is cut off."""
-        raise NotImplementedError
 
 
 @MCGUIRE.add("as many steps at any angle", only=ONLY)

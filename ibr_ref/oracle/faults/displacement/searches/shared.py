@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.programs.displacement.case import Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
@@ -14,16 +16,16 @@ DEEP = ("relief", "mcguire", "tatarchuk", "cone", "relaxed_cone")
 ALL = (*DEEP, "welsh")
 
 
-class _OtherWay(Sunken):
+class _OtherWay(Sunken, ABC):
     """The view ray goes elsewhere."""
 
     def rays(self, patch: Patch, point: Vector) -> Rays:
         rays = super().rays(patch, point)
         return Rays(rays.start, [*self.changed(patch, point, rays.way[:2]), rays.way[2]])
 
+    @abstractmethod
     def changed(self, patch: Patch, point: Vector, way: Vector) -> Vector:
         """-v_uv / v_h, as the bug has it."""
-        raise NotImplementedError
 
 
 @SHARED.add("offset towards the eye", only=ALL)

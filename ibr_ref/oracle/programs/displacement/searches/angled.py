@@ -2,22 +2,43 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.programs.displacement.case import Floats, Ints, Patch, Vector
+from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.searches.below import Descent
 
 
+@dataclass(frozen=True)
+class Sample:
+    """One step of the rays that search on."""
+
+    step: int
+    """k."""
+    rows: Ints
+    """Which rays."""
+    level: Floats
+    height: Floats
+    """H."""
+    ends: Any
+    """(rows,) whether it ends a search."""
+
+
 class Angled(Descent):
-    """n steps, from the cosine between the view ray and the normal."""
+    """Where the view ray's direction in the world counts."""
 
     def world_way(self, patch: Patch, rays: Rays) -> Vector:
         """The view ray in the world, from depth 1 up to the polygon."""
         return self.combined([patch.edge_u, patch.edge_v, patch.up], [-rays.way[0], -rays.way[1], 1.0])
+
+
+class Stepped(Angled):
+    """n steps, from the cosine between the view ray and the normal."""
 
     def cosine(self, patch: Patch, rays: Rays) -> Floats:
         """w_z: s over the ray's length, or the unit way's dot product with n."""
@@ -25,9 +46,38 @@ class Angled(Descent):
         ours = self.do.divide(patch.scale, self.do.root(self.do.dot(way, way)))
         return self.do.either(ours, lambda: self.do.dot(self.do.unit(way), patch.normal))
 
+    @abstractmethod
     def count(self, patch: Patch, rays: Rays) -> Floats:
         """n of each ray, a whole number."""
-        raise NotImplementedError
+
+    def level(self, fraction: Floats) -> Floats:
+        """What a sample at k/n is compared by: its depth."""
+        return fraction
+
+    def depth_of(self, level: Floats) -> Floats:
+        """Of a sample."""
+        return level
+
+    def ends(self, level: Floats, height: Floats) -> Bools:
+        """Whether a sample ends the search."""
+        return self.reached(level, height)
+
+    def samples(self, patch: Patch, rays: Rays, count: Floats, first: int) -> Iterator[Sample]:
+        """Step by step those of all rays that search on: one that leaves the map does not, nor one that has ended."""
+        searching = np.arange(len(count))
+        for k in range(first, self.most_steps() + 1):
+            searching = searching[np.asarray(count[searching] >= k)]
+            if not len(searching):
+                return
+            here = rays.some(searching)
+            level = self.level(self.fraction_of(k, count[searching], here))
+            u, v = self.below(here, self.depth_of(level))
+            on_map = np.asarray(self.on_map(patch, [u, v]))
+            searching, u, v, level = searching[on_map], u[on_map], v[on_map], level[on_map]
+            height = self.height_at(patch, u, v)
+            ends = np.asarray(self.ends(level, height))
+            yield Sample(k, searching, level, height, ends)
+            searching = searching[~ends]
 
     def told(self, patch: Patch, rays: Rays) -> Iterator[tuple[str, Floats]]:
         """The number of steps, and how far each sample is below the surface."""

@@ -6,6 +6,7 @@ positions and depths up step by step, as their authors' shaders do, or multiply:
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
@@ -79,7 +80,7 @@ class Sunken(Port):
         return self.overlap(depth, height) >= 0.0
 
 
-class Descent(Sunken):
+class Descent(Sunken, ABC):
     """Searches that end at a depth of their own, on no lattice."""
 
     def march(self, patch: Patch, fragments: Fragments) -> Hits:
@@ -100,13 +101,13 @@ class Descent(Sunken):
             np.zeros(count, np.bool_),
         )
 
+    @abstractmethod
     def descend(self, patch: Patch, rays: Rays) -> Found:
         """The search."""
-        raise NotImplementedError
 
+    @abstractmethod
     def told(self, patch: Patch, rays: Rays) -> Iterator[tuple[str, Floats]]:
         """What a port author compares with: steps of the computation in words, and what comes out."""
-        raise NotImplementedError
 
     def place(self, patch: Patch, rays: Rays, found: Found) -> Vector:
         """(u, v, h) of the hit: on the ray."""

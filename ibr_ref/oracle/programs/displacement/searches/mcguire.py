@@ -9,12 +9,12 @@ import numpy as np
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.programs.displacement.case import Floats, Ints, Patch
 from ibr_ref.oracle.programs.displacement.march import Rays
-from ibr_ref.oracle.programs.displacement.searches.angled import Angled
+from ibr_ref.oracle.programs.displacement.searches.angled import Stepped
 from ibr_ref.oracle.programs.displacement.searches.below import Found
 from ibr_ref.scene.checks import reject
 
 
-class McGuire(Angled, search="mcguire"):
+class McGuire(Stepped, search="mcguire"):
     """The first of n samples, from d = 0 on, with d >= D."""
 
     def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
@@ -36,24 +36,13 @@ class McGuire(Angled, search="mcguire"):
     def descend(self, patch: Patch, rays: Rays) -> Found:
         """Sample by sample; a ray that leaves the map finds nothing."""
         count = self.count(patch, rays)
-        step, searching = np.full(len(count), -1), np.arange(len(count))
+        step = np.full(len(count), -1)
         last = before = self.do.in_lanes(0.0, rays.start[0])
-        for k in range(self.most_steps() + 1):
-            searching = searching[np.asarray(count[searching] >= k)]
-            if not len(searching):
-                break
-            here = rays.some(searching)
-            depth = self.fraction_of(k, count[searching], here)
-            u, v = self.below(here, depth)
-            on_map = np.asarray(self.on_map(patch, [u, v]))
-            searching, u, v, depth = searching[on_map], u[on_map], v[on_map], depth[on_map]
-            height = self.height_at(patch, u, v)
-            stops = np.asarray(self.reached(depth, height))
-            there = searching[stops]
-            step[there] = k
+        for sample in self.samples(patch, rays, count, first=0):
+            there = sample.rows[sample.ends]
+            step[there] = sample.step
             before = self.kept(before, there, last[there])
-            last = self.kept(last, searching, height)
-            searching = searching[~stops]
+            last = self.kept(last, sample.rows, sample.height)
         return Found(step, self.fraction_of(np.maximum(self.shown_step(step), 0), count, rays), before)
 
     def shown_step(self, step: Ints) -> Ints:

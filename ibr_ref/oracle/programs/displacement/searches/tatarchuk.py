@@ -6,11 +6,11 @@ import numpy as np
 
 from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Ints, Patch
 from ibr_ref.oracle.programs.displacement.march import Rays
-from ibr_ref.oracle.programs.displacement.searches.angled import Angled
+from ibr_ref.oracle.programs.displacement.searches.angled import Stepped
 from ibr_ref.oracle.programs.displacement.searches.below import Found
 
 
-class Tatarchuk(Angled, search="tatarchuk"):
+class Tatarchuk(Stepped, search="tatarchuk"):
     """The first of n samples above the ray, and the crossing with the line from the one before."""
 
     def most_steps(self) -> int:
@@ -29,37 +29,34 @@ class Tatarchuk(Angled, search="tatarchuk"):
     def descend(self, patch: Patch, rays: Rays) -> Found:
         """Sample by sample; without a stop the hit is at depth 1."""
         count = self.count(patch, rays)
-        step, searching = self.last_step(count), np.arange(len(count))
-        one = self.do.in_lanes(1.0, rays.start[0])
+        step, one = self.last_step(count), self.do.in_lanes(1.0, rays.start[0])
         last = self.do.in_lanes(self.first_height(), rays.start[0])
         last_ray, depth, before = one, one, self.do.in_lanes(0.0, rays.start[0])
-        for k in range(1, self.most_steps() + 1):
-            searching = searching[np.asarray(count[searching] >= k)]
-            if not len(searching):
-                break
-            here = rays.some(searching)
-            ray = self.do.subtract(1.0, self.fraction_of(k, count[searching], here))
-            u, v = self.below(here, self.do.subtract(1.0, ray))
-            on_map = np.asarray(self.on_map(patch, [u, v]))
-            searching, u, v, ray = searching[on_map], u[on_map], v[on_map], ray[on_map]
-            height = self.height_at(patch, u, v)
-            stops = np.asarray(self.above_ray(height, ray))
-            there = searching[stops]
-            step[there] = k
-            found = self.crossing(ray[stops], height[stops], last_ray[there], last[there])
+        for sample in self.samples(patch, rays, count, first=1):
+            rows, ends = sample.rows, sample.ends
+            there = rows[ends]
+            step[there] = sample.step
+            found = self.crossing(sample.level[ends], sample.height[ends], last_ray[there], last[there])
             depth = self.kept(depth, there, self.do.subtract(1.0, found))
             before = self.kept(before, there, last[there])
-            last, last_ray = self.kept(last, searching, height), self.kept(last_ray, searching, ray)
-            searching = searching[~stops]
+            last, last_ray = self.kept(last, rows, sample.height), self.kept(last_ray, rows, sample.level)
         return Found(step, depth, before)
 
     def last_step(self, count: Floats) -> Ints:
         """What is written where nothing stops."""
         return np.asarray(count, np.int64)
 
-    def above_ray(self, height: Floats, ray: Floats) -> Bools:
+    def level(self, fraction: Floats) -> Floats:
+        """Height of the ray, 1 - k/n."""
+        return self.do.subtract(1.0, fraction)
+
+    def depth_of(self, level: Floats) -> Floats:
+        """1 - (1 - k/n)."""
+        return self.do.subtract(1.0, level)
+
+    def ends(self, level: Floats, height: Floats) -> Bools:
         """H > 1 - k/n."""
-        return height > ray
+        return height > level
 
     def crossing(self, ray: Floats, height: Floats, ray_before: Floats, height_before: Floats) -> Floats:
         """Height at which the ray crosses the line between two samples: between the two."""
