@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from ibr_ref.cli import options
 
 if TYPE_CHECKING:
     import numpy as np
@@ -14,6 +16,19 @@ if TYPE_CHECKING:
 
     from ibr_ref.io import HeightMap
     from ibr_ref.scene import BasePolygon
+
+Color = Annotated[Path | None, typer.Option(help="Colour map. Without: greys by height.")]
+Normal = Annotated[Path | None, typer.Option(help="Normal map (+y is up). Without: from the heights.")]
+Facade = Annotated[Path | None, typer.Option(help="Tile that covers steep walls.")]
+FacadeTile = Annotated[
+    options.Pair, typer.Option(parser=options.pair, metavar="W,H", help="Size of a facade tile, world units.")
+]
+TILE = options.Pair(0.1, 0.1)
+InvertHeight = Annotated[bool, typer.Option("--invert-height", help="White is deep in the height map.")]
+LightDirection = Annotated[
+    options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="Direction towards the light.")
+]
+LIGHT = options.Vector(-0.6, -0.5, 1)
 
 _MOST_GREYS = 2048
 """Texels a side of the colours made of heights: a large map's would take three times its memory."""

@@ -104,13 +104,11 @@ def read(
         Path | None,
         typer.Option(help="Instead of --height and --normal: RGBA, the normal in RGB, the height in alpha."),
     ] = None,
-    color: Annotated[Path | None, typer.Option(help="Colour map. Without: greys by height.")] = None,
-    normal: Annotated[Path | None, typer.Option(help="Normal map (+y is up). Without: from the heights.")] = None,
-    facade: Annotated[Path | None, typer.Option(help="Tile that covers steep walls.")] = None,
-    facade_tile: Annotated[
-        options.Pair, typer.Option(parser=options.pair, metavar="W,H", help="Size of a facade tile, world units.")
-    ] = options.Pair(0.1, 0.1),
-    invert_height: Annotated[bool, typer.Option("--invert-height", help="White is deep in the height map.")] = False,
+    color: base_polygon.Color = None,
+    normal: base_polygon.Normal = None,
+    facade: base_polygon.Facade = None,
+    facade_tile: base_polygon.FacadeTile = base_polygon.TILE,
+    invert_height: base_polygon.InvertHeight = False,
     no_exif: Annotated[
         bool, typer.Option("--no-exif", help="Keep the rows as stored: do not turn images as their Exif tags say.")
     ] = False,
@@ -142,9 +140,7 @@ def read(
     fov: Annotated[float, typer.Option(parser=options.number, help="Vertical field of view, degrees.")] = 45.0,
     near: options.Near = None,
     far: options.Far = None,
-    light: Annotated[
-        options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="Direction towards the light.")
-    ] = options.Vector(-0.6, -0.5, 1),
+    light: base_polygon.LightDirection = base_polygon.LIGHT,
     size: Annotated[
         options.Size, typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture.")
     ] = options.Size(640, 480),
@@ -266,12 +262,7 @@ def command(
             step,
         )
         if frame is not None:
-            step("writing")
-            if stages is not None:
-                frame.save_stages(stages)
-            if depth_set is not None:
-                io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
-            frame.save(out, bits)
+            pictures.write(wanted, frame, step, stages=stages, depth_set=depth_set, camera=scene.camera)
     own_case.write(case, scene, params)
     emptiness.say(shown, lambda: displacement.culled(scene, params))
 

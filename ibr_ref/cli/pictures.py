@@ -100,6 +100,20 @@ def draw(
     return emptiness.shows(frame), frame
 
 
+def write(
+    wanted: Wanted, frame: Frame, step: Step, *, stages: Path | None, depth_set: Path | None = None, camera: Any = None
+) -> None:
+    """A picture that is there as a whole, and what else is kept of it; depth_set: of its camera."""
+    from ibr_ref import io
+
+    step("writing")
+    if stages is not None:
+        frame.save_stages(stages)
+    if depth_set is not None:
+        io.write_depth_set(depth_set, [frame.depth_image(camera)], bits=wanted.bits)
+    frame.save(wanted.out, wanted.bits)
+
+
 def _in_bands(wanted: Wanted, scene: Any, render: Callable[..., Frame], step: Step) -> bool:
     from ibr_ref import io
     from ibr_ref.cli import emptiness

@@ -93,9 +93,7 @@ class Controls(StrEnum):
 def read(
     context: typer.Context,
     caster: shadows_stage.Casters = None,
-    up: Annotated[
-        shadows_stage.Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")
-    ] = None,
+    up: shadows_stage.UpAxis = None,
     offset: shadows_stage.Offsets = None,
     samples: Annotated[
         int, typer.Option(parser=options.whole, help="Samples of the light: 1 (a hard shadow), 5 or 9.")
@@ -144,8 +142,11 @@ def read(
     ] = options.Size(640, 480),
     *,
     within: Callable[[str, int, int], None] | None = None,
+    case: Path | None = None,
 ) -> Described:
     """What the options describe, and the maps; within: told how far these are. Several casters or lights are an Ensemble.
+
+    case: a folder for the case of it, which the oracle has for one of each alone: said before maps are prepared.
 
     Raises ValueError and OSError for what makes no scene.
     """
@@ -167,11 +168,12 @@ def read(
     )
     several = len(ensemble.pairs) > 1 or bool(light_power)
     if several:
-        shadows_several.check_goes_with(ensemble, {f"--method {method.value}": method.soft, f"--maps {maps}": maps})
-    alone = ensemble.scene(0, 0)
-    scene = ensemble if several else alone
+        alone = {f"--method {method.value}": method.soft, f"--maps {maps}": maps, f"--case {case}": case}
+        shadows_several.check_goes_with(ensemble, alone)
+    first = ensemble.scene(0, 0)
+    scene = ensemble if several else first
     if method.soft:
-        return Described(alone, shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples), {})
+        return Described(first, shadows.SoftParams(method=method.value, map_size=map_size, map_samples=map_samples), {})
     fields: dict[str, Any] = {
         "map_size": map_size,
         "map_samples": map_samples,
@@ -190,7 +192,7 @@ def read(
     if several:
         made = shadows.prepare_ensemble(ensemble, params, controls=controls.value, progress=within)
         return Described(scene, params, {"maps": made})
-    return Described(scene, params, {"maps": loaded or _prepared(alone, params, controls, maps, within)})
+    return Described(scene, params, {"maps": loaded or _prepared(first, params, controls, maps, within)})
 
 
 @beside(read)
@@ -223,10 +225,9 @@ def command(
         own_case.check_writable(case)
         if stages is not None:
             io.check_writable(stages)
-        scene, params, inputs, _ = read(**described, within=step.within)
+        scene, params, inputs, _ = read(**described, within=step.within, case=case)
         several, soft = isinstance(scene, shadows.Ensemble), isinstance(params, shadows.SoftParams)
         if several:
-            shadows_several.check_goes_with(scene, {f"--case {case}": case})
             drawing = shadows_several.drawing(scene, params, inputs.get("maps"))
         elif soft:
             drawing = shadows_drawing.soft(scene, params, wanted.in_bands)
@@ -238,16 +239,11 @@ def command(
             scene,
             params,
             lambda scene, **rows: drawing.render(scene, keep, **rows),
-            lambda camera: shadows_stage.fitted(scene, camera, near, far),
+            lambda camera: camera.fitted(shadows.bounding_points(scene), near=near, far=far),
             step,
         )
         if frame is not None:
-            step("writing")
-            if stages is not None:
-                frame.save_stages(stages)
-            if depth_set is not None:
-                io.write_depth_set(depth_set, [frame.depth_image(scene.camera)], bits=bits)
-            frame.save(out, bits)
+            pictures.write(wanted, frame, step, stages=stages, depth_set=depth_set, camera=scene.camera)
     for line in drawing.report(frame) if frame is not None and report else []:
         typer.echo(line)
     emptiness.say(shown, lambda: shadows.culled(scene))

@@ -12,7 +12,7 @@ from ibr_ref.cli import options
 
 if TYPE_CHECKING:
     from ibr_ref.models import StageLight
-    from ibr_ref.scene import Camera, Mesh
+    from ibr_ref.scene import Mesh
     from ibr_ref.shadows import Ensemble
 
 Value = TypeVar("Value")
@@ -25,6 +25,7 @@ class Up(StrEnum):
     z = "z"
 
 
+UpAxis = Annotated[Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")]
 Casters = Annotated[
     list[Path] | None,
     typer.Option(
@@ -90,7 +91,8 @@ def stage(
     """All that is there, with z up; without a caster the horse."""
     from ibr_ref import models
 
-    meshes = [_read(path, up) for path in casters] if casters else [models.horse()]
+    paths: list[Path | None] = [*casters] if casters else [None]
+    meshes = [read_caster(path, up) for path in paths]
     places = offsets or [options.Pair(0, 0)]
     if len(places) != len(meshes):
         found, count = len(offsets or []), len(meshes)
@@ -120,17 +122,6 @@ def stage_lights(
     return [StageLight(position=place, target=target, size=size, power=power) for place, target, size, power in rows]
 
 
-def fitted(ensemble: Ensemble, camera: Camera, near: float | None, far: float | None) -> Camera:
-    """The camera with planes around all that is there, or where they are given."""
-    import numpy as np
-
-    from ibr_ref.models.stage_light import corners
-
-    bounds = [mesh.bounds for mesh in ensemble.receivers]
-    bounds += [mesh.bounds + offset @ axes for mesh, axes, offset in ensemble.movers]
-    return camera.fitted(corners(np.concatenate(bounds)), near=near, far=far)
-
-
 def _for_each(flag: str, found: list[Value], count: int, of: str) -> list[Value]:
     """As many values as there are casters or lights: one stands for all."""
     if len(found) not in (1, count):
@@ -138,7 +129,8 @@ def _for_each(flag: str, found: list[Value], count: int, of: str) -> list[Value]
     return found * count if len(found) == 1 else found
 
 
-def _read(path: Path, up: Up | None) -> Mesh:
-    from ibr_ref import io
+def read_caster(path: Path | None, up: Up | None) -> Mesh:
+    """The mesh with z up; without a path the horse."""
+    from ibr_ref import io, models
 
-    return io.read_upright(path, None if up is None else up.value)
+    return models.horse() if path is None else io.read_upright(path, None if up is None else up.value)

@@ -259,10 +259,7 @@ def command(
             step,
         )
         if picture is not None:
-            step("writing")
-            if stages is not None:
-                picture.save_stages(stages)
-            picture.save(out, bits)
+            pictures.write(wanted, picture, step, stages=stages)
     own_case.write(case, scene, params)
     emptiness.say(shown, lambda: splatting.culled(scene, params))
     if picture is not None and report:

@@ -154,7 +154,6 @@ def view_of(
 def fitted(images: Sequence[DepthImage], camera: Camera, near: float | None, far: float | None) -> Camera:
     """The camera with planes around all points, or where they are given."""
     from ibr_ref import splatting
+    from ibr_ref.scene.boxes import box_corners
 
-    ends = splatting.bounds(images)
-    corners = [[ends[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
-    return camera.fitted(corners, near=near, far=far)
+    return camera.fitted(box_corners(splatting.bounds(images)), near=near, far=far)

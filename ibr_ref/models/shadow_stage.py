@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.models.stage_light import StageLight, corners
+from ibr_ref.models.stage_light import StageLight
 from ibr_ref.scene import Camera, Mesh, checks
+from ibr_ref.scene.boxes import box_corners
 from ibr_ref.shadows import Caster, Ensemble, Scene
 
 REACH = 0.6
@@ -90,8 +91,8 @@ def shadow_ensemble(
     up = (0.0, 1.0, 0.0) if above else (0.0, 0.0, 1.0)
     camera = Camera.look_at(eye=eye, target=target, up=up, vertical_fov=FIELD_OF_VIEW, width=width, height=height)
     placed = [mesh.bounds + np.append(place, 0.0) for mesh, place in zip(meshes, places, strict=True)]
-    around = corners(np.concatenate([*(mesh.bounds for mesh in receivers), *placed]))
-    bounds = corners(np.concatenate([mesh.bounds for mesh in meshes]))
+    around = box_corners(np.concatenate([*(mesh.bounds for mesh in receivers), *placed]))
+    bounds = box_corners(np.concatenate([mesh.bounds for mesh in meshes]))
     return Ensemble(
         receivers=receivers,
         casters=[

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ibr_ref.array_types import Floats
 from ibr_ref.scene import AreaLight, Camera, checks
+from ibr_ref.scene.boxes import box_corners
 
 POSITION, TARGET = (-1.0, -1.2, 5.0), (0.0, 0.0, 0.0)
 
@@ -49,7 +50,9 @@ class StageLight:
         if np.array_equal(place, middle):
             raise checks.reject("light_target", middle.tolist(), "a point other than the light's position")
         moved = np.append(reach + edges.diagonal(), 0.0)  # as any sample of the light sees them
-        return _placed(place, middle, edges, corners(np.concatenate([casters - moved, casters + moved])), everything)
+        return _placed(
+            place, middle, edges, box_corners(np.concatenate([casters - moved, casters + moved])), everything
+        )
 
 
 def _placed(place: Floats, middle: Floats, edges: Floats, casters: Floats, everything: Floats) -> AreaLight:
@@ -85,12 +88,6 @@ def half_edges(size: ArrayLike) -> Floats:
         if min(a, b) < 0.0:
             raise checks.reject("light_size", [a, b], "numbers >= 0")
     return np.array([[a, 0.0, 0.0], [0.0, b, 0.0]])
-
-
-def corners(points: Floats) -> Floats:
-    """(8, 3) of the box around points (N, 3)."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    return np.array([[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)])
 
 
 def _seen(view_from_world: Floats, points: Floats) -> tuple[Floats, Floats]:

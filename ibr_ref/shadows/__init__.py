@@ -16,6 +16,7 @@ made.
 """
 
 from ibr_ref.scene import AreaLight
+from ibr_ref.shadows.bounds import bounding_points
 from ibr_ref.shadows.culling import culled, cut_by_light
 from ibr_ref.shadows.ensemble import Caster, Ensemble
 from ibr_ref.shadows.grid import MapGrid, prepare_grid
@@ -34,6 +35,7 @@ __all__ = [
     "Params",
     "Scene",
     "SoftParams",
+    "bounding_points",
     "culled",
     "cut_by_light",
     "prepare",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.array_types import Floats
+from ibr_ref.scene.roberts import R2
 from ibr_ref.shadows import maps, pace
 from ibr_ref.shadows.residuals import Places
 
@@ -14,14 +15,11 @@ _SAMPLES = 4
 TRAINING, OTHERS = 0.0, 0.5
 """Phases of two sequences of places."""
 
-_R2 = (0.7548776662466927, 0.5698402909980532)
-"""Roberts' sequence in two dimensions: powers of 1 / 1.3247..., the root of x^3 = x + 1."""
-
 
 def _fractions(side: int, phase: float) -> Floats:
     """(side^2, 2) places in a cell, one in each of side x side squares."""
     steps = np.arange(side * side)
-    jitter = [(phase + (steps + 1) * share) % 1.0 for share in _R2]
+    jitter = [(phase + (steps + 1) * share) % 1.0 for share in R2]
     return np.stack([(steps % side + jitter[0]) / side, (steps // side + jitter[1]) / side], axis=1)
 
 
@@ -56,7 +54,7 @@ def offsets(positions: Floats, side: int, phase: float) -> Floats:
 def spread(positions: Floats, count: int) -> Floats:
     """(N, 2) places evenly over the whole range of the positions (3, 3, 2): for judging, not for training."""
     steps = np.arange(count) + 1.0
-    shares = np.stack([(0.25 + steps * share) % 1.0 for share in _R2], axis=1)
+    shares = np.stack([(0.25 + steps * share) % 1.0 for share in R2], axis=1)
     low, high = positions[0, 0], positions[2, 2]
     return np.asarray(low * (1.0 - shares) + high * shares)
 

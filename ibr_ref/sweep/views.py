@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ibr_ref.array_types import Floats
 from ibr_ref.scene import Camera, checks
+from ibr_ref.scene.roberts import R2
 from ibr_ref.scene.trigonometry import sine_cosine
 from ibr_ref.scene.vectors import dot
 
@@ -44,5 +45,5 @@ def _turned(camera: Camera, middle: Floats, share: float) -> Camera:
 
 def places(low: Floats, high: Floats, count: int) -> list[Floats]:
     """`count` points (2,) that fill a rectangle evenly, however many there are: Roberts' sequence R2, from the middle on."""
-    steps = np.array([0.7548776662466927, 0.5698402909980532])  # 1/g and 1/g^2, g^3 = g + 1
+    steps = np.array(R2)
     return [low + (high - low) * ((0.5 + i * steps) % 1.0) for i in range(count)]

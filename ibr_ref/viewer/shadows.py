@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from itertools import product
 from typing import Any
 
 import numpy as np
 
 from ibr_ref.array_types import Floats
 from ibr_ref.scene.limits import Real
-from ibr_ref.shadows import Maps, Params, Scene, prepare
+from ibr_ref.shadows import Maps, Params, Scene, bounding_points, prepare
 from ibr_ref.shadows.inputs import LIMITS, READ_BY, SAMPLE_COUNTS
 from ibr_ref.shadows.render import check_maps
 from ibr_ref.viewer.knobs import Knob, OneOf
@@ -21,9 +20,7 @@ _X, _Y, _AMBIENT = "offset_x", "offset_y", "ambient"
 
 
 def _points(scene: Scene, params: Params) -> Floats:
-    meshes = [*(mesh.bounds for mesh in scene.receivers), scene.caster.bounds + np.asarray(scene.offset) @ scene.axes]
-    low, high = np.concatenate(meshes).min(axis=0), np.concatenate(meshes).max(axis=0)
-    return np.array(list(product(*zip(low, high, strict=True))))
+    return bounding_points(scene)
 
 
 def _knobs(scene: Scene) -> dict[str, Knob]:

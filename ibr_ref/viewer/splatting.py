@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from itertools import product
 from typing import Any
 
-import numpy as np
-
 from ibr_ref.array_types import Floats
+from ibr_ref.scene.boxes import box_corners
 from ibr_ref.splatting import Params, Scene, bounds
 from ibr_ref.splatting.inputs import LIMITS, READ_BY
 from ibr_ref.viewer import lights
@@ -18,7 +16,7 @@ from ibr_ref.viewer.room import Viewable
 
 
 def _points(scene: Scene, params: Params) -> Floats:
-    return np.array(list(product(*np.transpose(bounds(scene.images)))))
+    return box_corners(bounds(scene.images))
 
 
 def _knobs(scene: Scene) -> dict[str, Knob]:

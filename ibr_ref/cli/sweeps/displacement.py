@@ -41,13 +41,11 @@ def command(
             parser=options.pair, metavar="LOW,HIGH", help="Heights that become 0 and 1, in the file's numbers."
         ),
     ] = None,
-    color: Annotated[Path | None, typer.Option(help="Colour map. Without: greys by height.")] = None,
-    normal: Annotated[Path | None, typer.Option(help="Normal map (+y is up). Without: from the heights.")] = None,
-    facade: Annotated[Path | None, typer.Option(help="Tile that covers steep walls.")] = None,
-    facade_tile: Annotated[
-        options.Pair, typer.Option(parser=options.pair, metavar="W,H", help="Size of a facade tile, world units.")
-    ] = options.Pair(0.1, 0.1),
-    invert_height: Annotated[bool, typer.Option("--invert-height", help="White is deep in the height map.")] = False,
+    color: base_polygon.Color = None,
+    normal: base_polygon.Normal = None,
+    facade: base_polygon.Facade = None,
+    facade_tile: base_polygon.FacadeTile = base_polygon.TILE,
+    invert_height: base_polygon.InvertHeight = False,
     height_scale: Annotated[
         float | None, typer.Option(parser=options.number, help="Height of white, world units. Without: 0.15.")
     ] = None,
@@ -57,9 +55,7 @@ def command(
     target: Annotated[
         options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point that it looks at.")
     ] = options.Vector(0, 0, 0),
-    light: Annotated[
-        options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="Direction towards the light.")
-    ] = options.Vector(-0.6, -0.5, 1),
+    light: base_polygon.LightDirection = base_polygon.LIGHT,
     size: shared.Size = shared.SMALL,
     views: shared.Views = 1,
     against: Annotated[

@@ -30,9 +30,7 @@ class Against(StrEnum):
 def command(
     over: shared.Overs,
     caster: Annotated[Path | None, typer.Option(help="The mesh that moves. Without: a horse.")] = None,
-    up: Annotated[
-        shadows_stage.Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")
-    ] = None,
+    up: shadows_stage.UpAxis = None,
     light: Annotated[
         options.Vector | None,
         typer.Option(parser=options.vector, metavar="X,Y,Z", help="Where the light is. Without: -1,-1.2,5."),
@@ -59,9 +57,9 @@ def command(
     """
 
     def make() -> tuple[Any, Any]:
-        from ibr_ref import io, models
+        from ibr_ref import models
 
-        mesh = models.horse() if caster is None else io.read_upright(caster, None if up is None else up.value)
+        mesh = shadows_stage.read_caster(caster, up)
         scene = models.shadow_stage(
             mesh, light_position=light, light_size=light_size, width=size.width, height=size.height
         )
