@@ -91,7 +91,7 @@ def test_a_device_is_measured_and_taken(run: Run, tmp_path: Path) -> None:
     code, said, _ = run("probe", tmp_path / "probe", tmp_path / "drawn", "--out", tmp_path / "device.json")
     assert code == 0
     assert said.splitlines()[0].startswith("subpixel_bits: 8, measured (")
-    assert said.splitlines()[-1] == "clip_z, clip_border, unorm_rounding: assumed, as ieee32 grants them"
+    assert said.splitlines()[-1] == "clip_z, clip_border, setup, unorm_rounding: assumed, as ieee32 grants them"
     document = json.loads((tmp_path / "device.json").read_text())
     assert document == {
         "profile": "ieee32",

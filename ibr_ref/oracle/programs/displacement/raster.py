@@ -55,11 +55,14 @@ class Raster(Case):
 
     def polygons(self, quads: Sequence[Quad]) -> list[tuple[int, list[Floats]]]:
         """The quads' faces, and what clipping leaves of each triangle."""
+        return [(face, self.clipped(corners)) for face, corners in self.unclipped(quads)]
+
+    def unclipped(self, quads: Sequence[Quad]) -> list[tuple[int, list[Floats]]]:
+        """The quads' faces, and the corners of each triangle as they are."""
         found = []
         for quad in quads:
             vertices = np.concatenate([quad.clip, quad.patch], axis=1)
-            for corners in self.triangles_of(quad):
-                found.append((quad.face, self.clipped([vertices[i] for i in corners])))
+            found += [(quad.face, [vertices[i] for i in corners]) for corners in self.triangles_of(quad)]
         return found
 
     def fanned(self, polygons: Sequence[tuple[int, list[Floats]]]) -> list[tuple[int, list[Floats]]]:

@@ -76,7 +76,7 @@ def drawn(case: Any, lens: Lens, offset: Sequence[Bounded], size: int) -> Drawn:
     covered = certain.reshape(size, size), possible.reshape(size, size)
     if case.params.content == "mask":
         return Drawn(found, pixel, None, None, covered, cut.wild)
-    (depth,) = linear(Triangles.of(cut.x, cut.y, size, size, cut.borders), found, [cut.z])
+    (depth,) = linear(Triangles.of(cut.x, cut.y, size, size, cut.setups), found, [cut.z])
     depth = depth.widened(cut.z.device.depth_step)
     won = winners(pixel, owned.drawn, depth.low, depth.high, size * size, owner=owned.owner)
     return Drawn(found, pixel, depth, won, covered, cut.wild)

@@ -137,7 +137,7 @@ def see(case: Any, device: Device) -> Seen:
     painted = [one] if objects.plain.all() else [one, *objects.colors]
     cut = clipped([*clip, *objects.points, *painted], objects.triangles, objects.names, width, height)
     found = fragments(cut.x, cut.y, width, height)
-    triangles, owned = Triangles.of(cut.x, cut.y, width, height, cut.borders), owners(found, cut.names, width)
+    triangles, owned = Triangles.of(cut.x, cut.y, width, height, cut.setups), owners(found, cut.names, width)
     (depth,) = linear(triangles, found, [cut.z])
     depth = depth.widened(device.depth_step)
     pixel = found.rows * width + found.columns
