@@ -10,12 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.cases import Case, build, names
+from ibr_ref.oracle.declaration import Declaration
 from ibr_ref.oracle.examination import Examination, examine
 from ibr_ref.oracle.files import Submission, stale
 from ibr_ref.oracle.findings import Outcome
 
 
-def check(case: Case, submission: Submission, *, profile: str | None = None, name_causes: bool = True) -> Examination:
+def check(
+    case: Case, submission: Submission, *, profile: str | Declaration | None = None, name_causes: bool = True
+) -> Examination:
     """Judge a submission by the device that is given, or declared by the port, or the tightest that explains it.
 
     A wrong image that is the image of another built-in case of the method makes the verdict INCONCLUSIVE: the port did not
@@ -23,7 +26,11 @@ def check(case: Case, submission: Submission, *, profile: str | None = None, nam
     """
     problems = [str(problem) for problem in submission.problems]
     examination = examine(
-        case, submission.handed, profile=profile or submission.declaration, problems=problems, name_causes=name_causes
+        case,
+        submission.handed,
+        profile=submission.declaration if profile is None else profile,
+        problems=problems,
+        name_causes=name_causes,
     )
     image = examination.judgement("image")
     if image is None or not image.wrong.any():

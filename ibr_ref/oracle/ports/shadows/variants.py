@@ -198,7 +198,7 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("reciprocals", Policy(reciprocal=True), "vulkan"),
     Variant("8-bit weights", Policy(weight_bits=8), "vulkan"),
     Variant("8-bit weights truncated", Policy(weight_bits=8, weight_rounding="down"), "vulkan"),
-    Variant("4 subpixel bits", Policy(subpixel_bits=4), "gl,subpixel_bits=4"),
+    Variant("4 subpixel bits", Policy(subpixel_bits=4), "gl,subpixel_bits=4", coarse=True),
     Variant(
         "4 subpixel bits, own maps",
         Policy(subpixel_bits=4, subpixel_rounding="down"),
@@ -206,7 +206,12 @@ VARIANTS: tuple[Variant, ...] = (
         OwnMaps,
         HANDED_OVER,
     ),
-    Variant("bytes filtered in bytes", Policy(filtered_bytes=True, weight_bits=8), "gl,filter_result=unorm8"),
+    Variant(
+        "bytes filtered in bytes",
+        Policy(filtered_bytes=True, weight_bits=8),
+        "gl,filter_result=unorm8",
+        coarse=True,
+    ),
     Variant("subpixels up", Policy(subpixel_rounding="up"), "vulkan"),
     Variant("subpixels truncated", Policy(subpixel_rounding="down"), "vulkan"),
     Variant("24-bit depth", Policy(depth_bits=24), "vulkan"),
@@ -215,7 +220,7 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("jitter 2", Policy(jitter=2, seed=2), "gl"),
     Variant("jitter 3", Policy(jitter=2, seed=3, backwards=True), "gl"),
     Variant("unsnapped varyings", Policy(snapped_varyings=False), "gl"),
-    Variant("cut at the borders", Policy(snapped_varyings=False), "gl", CutAtBorders),
+    Variant("cut at the borders", Policy(snapped_varyings=False), "gl", CutAtBorders, coarse=True),
     Variant("8-bit colour", Policy(color_bits=8), "gl"),
     Variant("all of gl", _GL, "gl"),
 )

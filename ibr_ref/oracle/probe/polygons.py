@@ -1,4 +1,4 @@
-"""A device measured: what a port of displacement mapping drew of one case says with which numbers its device computes.
+"""What a port of displacement mapping drew of one case says of its device's rasterizer, filter and depth buffer.
 
 The case has many small polygons at random places, each with its own maps of bytes. From the port's own arrays follow
 
@@ -7,16 +7,12 @@ The case has many small polygons at random places, each with its own maps of byt
 - `varyings`: whether the points on the faces are those of the snapped corners, or of the corners as they were;
 - `texel_weight_bits`, `filter_result`: which filter gives the albedo at the port's own hit;
 - `depth_format`: whether depths are multiples of a fixed-point step.
-
-All else is assumed as the profile grants it. A number that none of its values explains by far better than the others is
-assumed too.
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,7 +21,7 @@ from ibr_ref.array_types import Floats
 from ibr_ref.displacement import Params, Scene
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.declaration import NUMBERS
+from ibr_ref.oracle.probe.measured import Measured
 from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.scene import BasePolygon, Camera, Light, checks
 
@@ -74,7 +70,7 @@ def probe_case() -> Case:
     scene = Scene(polygons=polygons, camera=camera, light=Light(direction=(0.2, -0.3, 1.0)))
     params = Params(linear_steps=6, binary_steps=2, faces="base", steep_threshold=0.4)
     return Case(
-        name="probe",
+        name="probe-polygons",
         method="displacement",
         kind="typical",
         about="Many small polygons, from which the numbers of a device are measured: `ibr-ref probe`.",
@@ -82,21 +78,6 @@ def probe_case() -> Case:
         scene=scene,
         params=params,
     )
-
-
-@dataclass(frozen=True)
-class Measured:
-    """What was found."""
-
-    numbers: Mapping[str, int | str]
-    """As they are declared."""
-    why: Mapping[str, str]
-    """For each of them."""
-
-    @property
-    def assumed(self) -> list[str]:
-        """The numbers that are the profile's."""
-        return [name for name in NUMBERS if name not in self.numbers]
 
 
 def measure(case: Case, arrays: Mapping[str, Any]) -> Measured:
