@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 from ibr_ref.array_types import Floats
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.cases import Case, build, names
-from ibr_ref.oracle.faults import displacement, splatting
-from ibr_ref.oracle.ports import shadows
+from ibr_ref.oracle.faults import displacement, shadows, splatting
 from ibr_ref.oracle.undefined import UNDEFINED
 from ibr_ref.scene import Light
 
