@@ -61,11 +61,11 @@ class DisplacementReferee:
             return trace(case, device, handed, stage, index)
 
     def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
-        """The known bugs that explain a wrong stage; None: not looked for, as of a picture by itself."""
+        """The known bugs that explain a wrong stage, or a picture by itself."""
         return causes(case, device, handed, wrong)
 
     def recognizes(self, case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
-        """Whether the known bug of that name explains a wrong stage."""
+        """Whether the known bug of that name explains a wrong stage, or a picture by itself."""
         return recognizes(case, device, handed, wrong, cause)
 
     def parameters(self, case: Case) -> list[Parameter]:
