@@ -106,10 +106,8 @@ def met(case: Case) -> dict[str, int]:
         port = _Displacement(case.scene, case.params, policy, case.inputs)
         port.do = watched = Watched(policy)
     else:
-        port = type("WatchedShadows", (shadows.Port,), {"arithmetic": Watched})(
-            case.scene, case.params, policy, case.inputs
-        )
-        watched = port.ops
+        watched = Watched(policy)
+        port = shadows.Port(case.scene, case.params, policy, case.inputs).on(watched)
     with np.errstate(all="ignore"):
         port.render()
     return dict(watched.met)

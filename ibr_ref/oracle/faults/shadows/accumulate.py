@@ -118,5 +118,5 @@ class _LastAlone(Port):
 class _ClearedToWhite(Port):
     """The sum is cleared to 1/N, not to 0."""
 
-    def summed(self, shadows: list[Floats], alpha: Floats) -> Floats:
-        return self.do.add(super().summed(shadows, alpha), self.alpha(len(shadows)))
+    def summed(self, shadows: list[Floats], alpha: Floats, total: Floats) -> Floats:
+        return super().summed(shadows, alpha, total + self.alpha(len(shadows)))

@@ -17,7 +17,7 @@ EXACT = "the picture is made with the exact depth"
 
 class _Greater(Raster):
     def passes(self, depth: Floats, held: Floats) -> Bools:
-        return np.asarray((held == 1.0) | (depth > held), np.bool_)
+        return (held == 1.0) | (depth > held)
 
 
 @DEPTH.add("depth-greater")
@@ -56,7 +56,7 @@ class _NoNearClip(Port):
 
 class _Corners(Raster):
     def centre(self, pixel: Ints) -> Floats:
-        return np.asarray(pixel, np.float64)
+        return pixel
 
 
 @DEPTH.add("depth-pixel-corners")

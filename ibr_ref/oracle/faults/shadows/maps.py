@@ -68,7 +68,7 @@ class _RowsFlipped(Port):
     """Maps are read back bottom row first."""
 
     def nine_maps(self, positions: Floats) -> Floats:
-        return np.asarray(super().nine_maps(positions)[:, :, ::-1])
+        return super().nine_maps(positions)[:, :, ::-1]
 
 
 @MAPS.add("maps-last-map-left-out", small=True, hidden=GIVEN)
@@ -94,12 +94,12 @@ class _CoverageOverLess(Port):
 
     def nine_maps(self, positions: Floats) -> Floats:
         samples = self.params.map_samples**2
-        return np.asarray(np.minimum(super().nine_maps(positions) * samples / max(1, samples - 1), 1.0))
+        return np.minimum(super().nine_maps(positions) * samples / max(1, samples - 1), 1.0)
 
 
 class _Corners(Raster):
     def centre(self, pixel: Ints) -> Floats:
-        return np.asarray(pixel, np.float64)
+        return pixel
 
 
 @MAPS.add("maps-pixel-corners", small=True, hidden=GIVEN)
@@ -123,7 +123,7 @@ class _ViewportOneLess(Port):
 
 class _Farthest(Raster):
     def passes(self, depth: Floats, held: Floats) -> Bools:
-        return np.asarray((held == 1.0) | (depth > held), np.bool_)
+        return (held == 1.0) | (depth > held)
 
 
 @MAPS.add("maps-farthest-depth", hidden=GIVEN)
@@ -148,7 +148,7 @@ class _LinearDepth(Port):
     def nine_maps(self, positions: Floats) -> Floats:
         near, far = self.scene.light.near, self.scene.light.far
         depth = super().nine_maps(positions)
-        return np.asarray(near * depth / (far - depth * (far - near)))
+        return near * depth / (far - depth * (far - near))
 
 
 @MAPS.add("maps-samples-on-border")

@@ -90,7 +90,7 @@ class _BehindLight(Port):
     """The reverse projection behind the light casts shadows too."""
 
     def before_light(self, w: Floats) -> Bools:
-        return w == w
+        return np.isfinite(w)
 
 
 @PROJECT.add("project-caster-shadows-itself")

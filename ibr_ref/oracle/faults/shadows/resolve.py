@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
@@ -11,6 +13,13 @@ from ibr_ref.oracle.programs.shadows.port import Port
 from ibr_ref.oracle.programs.shadows.raster import Fragments, Raster
 
 RESOLVE = Bugs("resolve")
+
+
+def _fast_inverse_root(square: Any) -> Any:
+    """-1 / sqrt(x), nearly: by its bits, and one Newton step."""
+    x = np.asarray(square, np.float64).astype(np.float32)
+    guess = (np.int32(0x5F3759DF) - (x.view(np.int32) >> 1)).view(np.float32).astype(np.float64)
+    return -guess * (1.5 - 0.5 * x * guess * guess)
 
 
 @RESOLVE.add("resolve-ambient-2-percent", small=True)
@@ -110,9 +119,8 @@ class _FastInverseRoot(Port):
 
     def toward_light(self, world: Vector) -> Vector:
         light = [self.do.subtract(at, p) for p, at in zip(world, self.centre, strict=True)]
-        square = self.do.dot(light, light).astype(np.float32)
-        guess = (np.int32(0x5F3759DF) - (square.view(np.int32) >> 1)).view(np.float32).astype(np.float64)
-        return [component * guess * (1.5 - 0.5 * square * guess * guess) for component in light]
+        inverse = -self.do.rising(_fast_inverse_root, self.do.dot(light, light))
+        return [component * inverse for component in light]
 
 
 @RESOLVE.add("resolve-normal-half-floats", small=True, hidden=BELOW_A_BYTE)

@@ -25,7 +25,11 @@ class _ByDistance(Port):
         places = super().sample_places()
         if not isinstance(self.params.light_samples, np.ndarray):
             return places
-        return sorted(places, key=lambda place: float(np.sum((place - self.centre) ** 2)))
+        return sorted(places, key=self._away)
+
+    def _away(self, place: Floats) -> float:
+        way = list(place - self.centre)
+        return float(self.do.dot(way, way))
 
 
 @WARP.add("warp-s-for-t")
@@ -168,7 +172,7 @@ class _CornersAligned(Port):
 
 class _Strict(Raster):
     def inside(self, edge: Ints, owned: Bools) -> Bools:
-        return np.asarray(edge > 0, np.bool_)
+        return edge > 0
 
 
 @WARP.add("warp-no-fill-rule", small=True)
@@ -260,7 +264,7 @@ class _DirectFromCentre(Port):
 
 class _Back(Raster):
     def passes(self, depth: Floats, held: Floats) -> Bools:
-        return np.asarray((held == 1.0) | (depth > held), np.bool_)
+        return (held == 1.0) | (depth > held)
 
 
 @WARP.add("warp-direct-back-faces")

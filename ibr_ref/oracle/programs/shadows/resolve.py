@@ -15,7 +15,7 @@ class Resolve(Lights):
     def accumulated(self, shadows: list[Floats]) -> Floats:
         """The sum of all samples' shadows, each times 1/N."""
         alpha, added = self.quantized_alpha(self.alpha(len(shadows))), self.contributions(shadows)
-        total = self.summed(added, alpha)
+        total = self.summed(added, alpha, np.zeros(np.shape(shadows[0])))
         if self.params.accumulation == "float" and self.right("summed", "blended", "stored"):
             total = self.do.either(total, lambda: self.weighted(added, alpha))
             if self.right("alpha", "contributions"):
@@ -26,9 +26,8 @@ class Resolve(Lights):
         """Divided by N at its end."""
         return self.do.divide(self.do.sum(shadows), float(len(shadows)))
 
-    def summed(self, shadows: list[Floats], alpha: Floats) -> Floats:
-        """One after another."""
-        total = np.zeros(np.shape(shadows[0]))
+    def summed(self, shadows: list[Floats], alpha: Floats, total: Floats) -> Floats:
+        """One after another, onto what the buffer is cleared to."""
         for shadow in shadows:
             total = self.stored(self.blended(total, shadow, alpha))
         return total
