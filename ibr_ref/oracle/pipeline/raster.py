@@ -101,12 +101,13 @@ def fragments_of(program: Any, polygons: Faces, unclipped: Faces, polygon: int, 
     wholes = _wholes(program, polygons, unclipped, device)
     pieces, moved = _pieces([*enumerate(cuts), *enumerate(wholes)], found, (at_x, at_y, values), device)
     t, pixel = found.triangle, found.rows * width + found.columns
+    kept = ~np.array([program.may_lie_in_a_plane(vertices) for _, vertices in triangles], np.bool_)
     result = Fragments(
         pixel=pixel,
         polygon=np.full(len(t), polygon),
         triangle=t,
         face=np.array([program.face_number(face) for face, _ in triangles], np.int64)[t],
-        certain=_surely_covered(pixel, found, values[..., 4:]),
+        certain=_surely_covered(pixel, found, values[..., 4:]) & kept[t],
         weights=value,
         rounding=rounding,
         pieces=pieces,
