@@ -12,12 +12,13 @@ import json
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 from ibr_ref.oracle.arithmetic.device import Policy
-from ibr_ref.oracle.cases import Case
+from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.self_test import MUTANT_PROFILE, plain_port, tried
 from ibr_ref.testing import Found, Hunt, drawing
@@ -59,10 +60,17 @@ def hunted(method: str, mutant: Mutant, seconds: float, shrinking: float) -> Row
         port=drawing(draw), methods=(method,), system=system, device=MUTANT_PROFILE, shrinking=shrinking,
         clock=time.process_time,
     )  # fmt: skip
+    _warm(method)
     about: dict[str, Any] = {"method": method, "mutant": mutant.name, "stage": mutant.stage}
     for found in hunt.run(seconds):
         return Row(**about, tried=found.after, seconds=round(found.seconds, 2), **_size(found))
     return Row(**about, tried=hunt.tried, seconds=seconds)
+
+
+@cache
+def _warm(method: str) -> None:
+    """Kernels are compiled, or read, before anything is measured."""
+    build(names(method)[0]).frame  # noqa: B018
 
 
 def _size(found: Found) -> dict[str, Any]:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement, Parameter, TraceRow, up_to
-from ibr_ref.oracle.referees.shadows.cause import causes, recognizes
 from ibr_ref.oracle.referees.shadows.image import Accepted
 from ibr_ref.oracle.referees.shadows.inputs import HANDED_OVER, Inputs
 from ibr_ref.oracle.referees.shadows.parameters import parameters
@@ -61,10 +60,14 @@ class ShadowsReferee:
 
     def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
         """The known bugs that explain a wrong stage."""
+        from ibr_ref.oracle.referees.shadows.cause import causes  # with all known bugs: what passes needs none
+
         return causes(self._given(case, device, handed, wrong), handed, wrong)
 
     def recognizes(self, case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
         """Whether the known bug of a name explains a wrong stage."""
+        from ibr_ref.oracle.referees.shadows.cause import recognizes
+
         return recognizes(self._given(case, device, handed, wrong), wrong, cause)
 
     def _given(self, case: Case, device: Device, handed: Handed, wrong: Judgement | None = None) -> Inputs:
