@@ -8,6 +8,7 @@ from typing import Any
 
 from ibr_ref.array_types import Bools
 from ibr_ref.oracle.faults.shadows import MUTANTS
+from ibr_ref.oracle.faults.shadows.hidden import GIVEN
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.referees.causes import Inquiry
 from ibr_ref.oracle.referees.shadows.image import Accepted
@@ -90,4 +91,6 @@ def _inquiry(right: Inputs) -> Inquiry:
         return Replay(replace(right, kind=kind, among=among, right=right))
 
     sampled: Collection[str] = PIXELS
-    return Inquiry(mutants=_SUSPECTS, arrays=ARRAYS, replay=replay, sampled=sampled)
+    # A picture is made with the maps that the case hands over.
+    suspects = [m for m in _SUSPECTS if m.hidden != GIVEN] if right.picture else _SUSPECTS
+    return Inquiry(mutants=suspects, arrays=ARRAYS, replay=replay, sampled=sampled)

@@ -14,7 +14,7 @@ from ibr_ref.oracle.programs.shadows import Port as Program
 from ibr_ref.oracle.programs.shadows.raster import Raster
 from ibr_ref.oracle.referees.shadows.maps import hull
 from ibr_ref.oracle.referees.shadows.model import Model
-from ibr_ref.oracle.referees.shadows.warp import redrawn
+from ibr_ref.oracle.referees.shadows.warp import Mesh, mesh_of
 
 
 class Drawing(Machine):
@@ -23,6 +23,7 @@ class Drawing(Machine):
     def __init__(self, model: Model) -> None:
         """A fault may take the device for another one."""
         self.model = model
+        self._drawn: tuple[Number, Mesh] | None = None
         super().__init__(replace(model.device, **model.kind.limits))
 
     def caster_map(self, program: Program, raster: Raster, clip: Sequence[Any]) -> Number:
@@ -31,7 +32,11 @@ class Drawing(Machine):
 
     def warped(self, program: Program, image: Number, source: Number, target: Number) -> Number:
         """(S, S) an image redrawn from one grid to another."""
-        return redrawn(self.model, image, source, target)
+        if (
+            self._drawn is None or self._drawn[0] is not target
+        ):  # two images are warped to one grid, one after the other
+            self._drawn = target, mesh_of(self.model, target, len(image))
+        return self.model.number(self._drawn[1].warped(image, source))
 
 
 def model_of(case: Case, device: Device, kind: type[Program] = Program) -> Model:

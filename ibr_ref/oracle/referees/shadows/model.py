@@ -60,9 +60,8 @@ class Model:
         return self.machine.named(name, found) if name else found
 
     def numbers(self, vector: Sequence[Bounded], name: str = "") -> list[Number]:
-        """Components (n,) of n lanes."""
-        lane = np.arange(len(vector[0].value))
-        return [self.number(x, lane, name) for x in vector]
+        """Components (n,), of no lanes: what is decided of them is as the values have it."""
+        return [self.number(x, None, name) for x in vector]
 
     def bounded(self, x: Any) -> Bounded:
         """From the program; symbols are errors like others from there on."""

@@ -132,7 +132,7 @@ def see(model: Model) -> Seen:
     window = Pass(model, program.surface_raster(machine), width, height)
     vertices = [*program.to_clip(objects.points), *objects.points]
     painted = [Number(machine, np.ones(len(objects.names)))]
-    if not objects.plain.all():
+    if not (objects.plain.all() and program.right("colors")):
         painted += [objects.colors[:, k] for k in range(3)]
     with np.errstate(all="ignore"):
         cut = window.cut([model.bounded(x) for x in [*vertices, *painted]], objects.triangles, objects.names)
@@ -191,6 +191,8 @@ def _colors(
     if not channels:
         return plain
     found = [model.bounded(model.machine.of(c)) for c in model.program.colors(varyings, shown, w, channels)]
+    if not model.program.right("colors"):
+        return found
     return [p.where(objects.plain[source], v) for p, v in zip(plain, found, strict=True)]
 
 

@@ -17,12 +17,6 @@ from ibr_ref.oracle.referees.shadows.model import Model
 from ibr_ref.oracle.referees.shadows.varyings import Triangles
 
 
-def redrawn(model: Model, image: Number, source: Number, target: Number) -> Number:
-    """(S, S) an image with one grid as texture coordinates, drawn as another, both (R, C, 2)."""
-    mesh = mesh_of(model, target, len(image))
-    return model.number(mesh.warped(image, source))
-
-
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """A grid's triangles in the window of a map, and all pixels that each may cover."""
