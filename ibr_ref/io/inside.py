@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import re
 from pathlib import Path
 
@@ -18,9 +19,18 @@ def file_inside(field: str, folder: Path, name: str) -> Path:
         raise checks.reject(field, name[:200], "the name of one file, in the folder of this one or below")
     path = folder / name
     try:
-        within = path.resolve().is_relative_to(folder.resolve())
-    except (OSError, RuntimeError):  # a name that is too long, links in a circle
+        within = path.resolve().is_relative_to(folder.resolve()) and not _in_a_circle(path)
+    except (OSError, RuntimeError):  # a name that is too long; links in a circle, before Python 3.13
         within = False
     if not within:
         raise checks.reject(field, name[:200], "a file in the folder of this one or below, not a link out of it")
     return path
+
+
+def _in_a_circle(path: Path) -> bool:
+    """Whether links lead to each other, which `resolve` says nothing of since Python 3.13."""
+    try:
+        path.stat()
+    except OSError as error:
+        return error.errno == errno.ELOOP
+    return False

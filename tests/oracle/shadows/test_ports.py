@@ -24,8 +24,11 @@ HIDDEN = 0.15
 """Of the bugs that a picture can show, the most that may get away by the final image alone."""
 
 
-@pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.name)
-@pytest.mark.parametrize("name", SMALL)
+PAIRS = [(name, v) for i, v in enumerate(VARIANTS) for j, name in enumerate(SMALL) if (i + j) % 3 == 0]
+"""Each variant on every third case, each case by every third variant; `ibr-ref check --self-test` tries all on all."""
+
+
+@pytest.mark.parametrize(("name", "variant"), PAIRS, ids=lambda each: getattr(each, "name", each))
 def test_no_legal_variant_is_accused(name: str, variant: Variant) -> None:
     arrays = drawn(name, variant.policy, variant.port or Port)
     alone = [image(name, handed, variant.profile) for handed in pictures(arrays, variant)]
