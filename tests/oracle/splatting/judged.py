@@ -17,7 +17,8 @@ from ibr_ref.oracle.referees.splatting import SplattingReferee
 Arrays = dict[str, Any]
 
 REFEREE = SplattingReferee()
-SMALL = tuple(name for name in CASES if CASES[name]().kind != "real-sized")
+REAL = "splatting-kettle"
+SMALL = tuple(name for name in CASES if name != REAL)
 
 
 @cache
@@ -39,6 +40,12 @@ def drawn(name: str, policy: Policy = Policy(), port: Any = Port) -> Arrays:  # 
     if policy.color_bits == 8:
         arrays["color"] = color_bytes(arrays["color"])
     return arrays
+
+
+@cache
+def plain(name: str) -> Arrays:
+    """The plain port's, in float32."""
+    return drawn(name)
 
 
 def stages(name: str, handed: Arrays, profile: str | None = None) -> list[Judgement]:

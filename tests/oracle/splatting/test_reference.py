@@ -11,7 +11,7 @@ from ibr_ref.oracle.pipeline.splats import contest
 from ibr_ref.oracle.referees.splatting.model import Model
 from ibr_ref.oracle.referees.splatting.texels import codes_of
 from tests.oracle.judgements import complaints, in_bytes, picture
-from tests.oracle.splatting.judged import REFEREE, SMALL, case, image, reference, stages
+from tests.oracle.splatting.judged import REAL, REFEREE, SMALL, case, image, reference, stages
 
 
 @pytest.mark.parametrize("profile", PROFILES)
@@ -26,8 +26,7 @@ def test_the_reference_passes_under_every_profile(name: str, profile: str) -> No
 
 
 def test_the_reference_passes_in_its_real_size() -> None:
-    name = "splatting-kettle"
-    assert complaints([*stages(name, reference(name)), image(name, picture(reference(name)))]) == []
+    assert complaints([*stages(REAL, reference(REAL)), image(REAL, picture(reference(REAL)))]) == []
 
 
 @pytest.mark.parametrize("name", SMALL)

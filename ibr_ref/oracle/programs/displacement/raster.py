@@ -26,6 +26,12 @@ class Fragments:
     depth: Floats
     """Window depth of the face."""
 
+    def at(self, pixels: Bools) -> Fragments:
+        """Those of some pixels (H, W) of the picture."""
+        mine = pixels[self.row, self.column]
+        alone = {name: getattr(self, name)[mine] for name in ("row", "column", "triangle", "face", "depth")}
+        return Fragments(**alone, point=[x[mine] for x in self.point])
+
 
 class Raster(Case):
     """Clipping, coverage, interpolation."""

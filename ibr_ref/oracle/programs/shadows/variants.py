@@ -3,39 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.borders import SIDES
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.faults.kinds import Variant
-from ibr_ref.oracle.ports.shadows.port import Port
-from ibr_ref.oracle.ports.shadows.raster import Fragments, Raster
-from ibr_ref.oracle.ports.shadows.surface import Surface
+from ibr_ref.oracle.programs.program import Floats, Vector
+from ibr_ref.oracle.programs.shadows.lights import Matrix
+from ibr_ref.oracle.programs.shadows.port import Port
+from ibr_ref.oracle.programs.shadows.raster import Fragments, Raster
 
 
 class _LerpByDifference(Arithmetic):
     """A + f (b - a)."""
 
-    def lerp(self, a: ArrayLike, b: ArrayLike, f: ArrayLike) -> Floats:
+    def lerp(self, a: Any, b: Any, f: Any) -> Any:
         return self.dot([a, f], [1.0, self.subtract(b, a)])
 
 
 class LerpByDifference(Port):
     """Mixes are a + f (b - a)."""
 
-    arithmetic = _LerpByDifference
+    def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
+        """By an arithmetic of its own."""
+        super().__init__(scene, params, policy, inputs)
+        self.on(_LerpByDifference(policy))
 
 
 class _Planes(Raster):
     """Varyings by differences from the first corner."""
 
     def linear(self, fragments: Fragments, corners: Floats) -> Floats:
-        ops, (a, b, c) = self.ops, corners[fragments.triangle].T
-        shares = [ops.divide(edge, fragments.area) for edge in fragments.edges[1:]]
-        return ops.dot([a, *shares], [1.0, ops.subtract(b, a), ops.subtract(c, a)])
+        do, (a, b, c) = self.do, corners[fragments.triangle].T
+        shares = [do.divide(edge, fragments.area) for edge in fragments.edges[1:]]
+        return do.dot([a, *shares], [1.0, do.subtract(b, a), do.subtract(c, a)])
 
 
 class Planes(Port):
@@ -47,11 +48,11 @@ class Planes(Port):
 class _SharesFirst(Raster):
     """Perspective-correct weights that sum to one, then the sum of the corners."""
 
-    def perspective(self, fragments: Fragments, w: Floats, varyings: Sequence[Floats]) -> list[Floats]:
-        ops = self.ops
-        at = [ops.divide(edge, by) for edge, by in zip(fragments.edges, w[fragments.triangle].T, strict=True)]
-        shares = [ops.divide(weight, ops.sum(at)) for weight in at]
-        return [ops.dot(shares, list(varying[fragments.triangle].T)) for varying in varyings]
+    def perspective(self, fragments: Fragments, w: Floats, varyings: Sequence[Floats]) -> Vector:
+        do = self.do
+        at = [do.divide(edge, by) for edge, by in zip(fragments.edges, w[fragments.triangle].T, strict=True)]
+        shares = [do.divide(weight, do.sum(at)) for weight in at]
+        return [do.dot(shares, list(varying[fragments.triangle].T)) for varying in varyings]
 
 
 class SharesFirst(Port):
@@ -63,9 +64,9 @@ class SharesFirst(Port):
 class _CutAtBorders(Raster):
     """Clips at the picture's borders too."""
 
-    def distances(self, corner: Floats) -> list[Floats]:
+    def distances(self, corner: Floats) -> Vector:
         """Near, far, left, right, lower, upper."""
-        sides = [self.ops.add(corner[..., 3], sign * corner[..., axis]) for axis, sign in SIDES]
+        sides = [self.do.add(corner[..., 3], sign * corner[..., axis]) for axis, sign in SIDES]
         return [*super().distances(corner), *sides]
 
 
@@ -78,48 +79,42 @@ class CutAtBorders(Port):
 class CombinedMatrices(Port):
     """The texture matrix and the camera's are products, made once, in floats."""
 
-    def to_clip(self, raster: Raster, world: list[Floats]) -> list[Floats]:
+    def to_clip(self, world: Vector) -> Vector:
         """Clip coordinates by one product."""
         camera = self.scene.camera
-        clip_from_world = self._product(self.ops.number(camera.clip_from_view), self.ops.number(camera.view_from_world))
-        return raster.transform(clip_from_world, [*world, np.ones_like(world[0])])
+        return self.by_product(self.do.matrix(camera.clip_from_view), self.do.matrix(camera.view_from_world), world)
 
-    def texture_coordinates(self, world: list[Floats], place: Floats) -> list[Floats]:
+    def texture_coordinates(self, world: Vector, place: Floats) -> Vector:
         """Q by one product."""
-        texture_from_light = self._product(self.texture_matrix(), self.clip_from_light)
-        matrix = self._product(texture_from_light, self.projecting_view(place))
-        return Raster(self.ops).transform(matrix, [*world, np.ones_like(world[0])])
-
-    def _product(self, a: Floats, b: Floats) -> Floats:
-        return np.stack([self.ops.dot(list(row), list(b)) for row in a])
+        return self.by_one_matrix(world, place)
 
 
 class HostMatrices(Port):
     """The light's matrices are made in doubles and rounded once."""
 
-    def light_view(self, place: Floats) -> Floats:
-        """(4, 4) as it is uploaded."""
-        return self.ops.number(self.scene.light.camera(1, place).view_from_world)
+    def light_view(self, place: Floats) -> Matrix:
+        """As it is uploaded."""
+        return list(self.do.matrix(self.scene.light.camera(1, place).view_from_world))
 
 
 class CosineOverLengths(Port):
     """n.l is divided by both lengths at the end; the normal is taken about the last corner."""
 
-    def normals(self, world: list[Floats]) -> list[Floats]:
+    def normals(self, world: Vector) -> Vector:
         """Of any length."""
-        first, second = ([self.ops.subtract(p[:, k], p[:, 2]) for p in world] for k in (0, 1))
+        first, second = ([self.do.subtract(p[:, k], p[:, 2]) for p in world] for k in (0, 1))
         return self.cross(first, second)
 
-    def toward_light(self, world: list[Floats]) -> list[Floats]:
+    def toward_light(self, world: Vector) -> Vector:
         """Of any length."""
-        return [self.ops.subtract(at, p) for p, at in zip(world, self.centre, strict=True)]
+        return [self.do.subtract(at, p) for p, at in zip(world, self.centre, strict=True)]
 
-    def cosine(self, surface: Surface) -> Floats:
+    def cosine(self, normal: Vector, world: Vector) -> Floats:
         """max(0, n.l) / (|n| |l|)."""
-        ops, light = self.ops, self.toward_light(surface.world)
-        normal = self.turned(surface.normal, self.toward_eye(surface.world))
-        lengths = ops.multiply(ops.root(ops.dot(normal, normal)), ops.root(ops.dot(light, light)))
-        return ops.divide(self.lambert(ops.dot(normal, light)), lengths)
+        do, light = self.do, self.toward_light(world)
+        normal = self.turned(normal, self.toward_eye(world))
+        lengths = do.multiply(do.root(do.dot(normal, normal)), do.root(do.dot(light, light)))
+        return do.divide(self.lambert(do.dot(normal, light)), lengths)
 
 
 class MeanOfSamples(Port):
@@ -129,32 +124,29 @@ class MeanOfSamples(Port):
         """(H, W)."""
         if self.params.accumulation != "float":
             return super().accumulated(shadows)
-        return self.ops.divide(self.ops.sum(shadows), len(shadows))
+        return self.mean(shadows)
 
 
 class ShadeBySum(Port):
     """Colour is the sum of an ambient and a direct part."""
 
-    def resolved(self, surface: Surface, shadow: Floats) -> Floats:
-        """(N, 3)."""
-        ops, ambient = self.ops, self.ambient()
-        light = ops.multiply(self.visibility(shadow), ops.multiply(self.direct_share(ambient), self.cosine(surface)))
-        return np.stack([ops.dot([color, color], [ambient, light]) for color in surface.color], axis=-1)
+    def shaded(self, color: Vector, shadow: Floats, cosine: Floats) -> Vector:
+        """Channels."""
+        return self.by_parts(color, shadow, cosine)
 
 
 class DirectFromCentre(Port):
     """Method "direct" renders the object moved the opposite way from the centre: what the sample sees, but for rounding."""
 
-    def direct_map(self, place: Floats) -> Floats:
-        """(S, S)."""
-        raster = self.direct_raster(self.ops)
-        return self.caster_map(raster, self.place_of_object(place), self.light_view(self.centre))
+    def direct_clip(self, place: Floats) -> Vector:
+        """Four (V,)."""
+        return self.moved_clip(place)
 
 
 class OwnMaps(Port):
     """The port warps nine maps that it has rendered itself, not those that the case hands over."""
 
-    def lines(self) -> list[Floats]:
+    def lines(self) -> Vector:
         """Of its own positions."""
         positions = self.positions()
         return [positions[0, :, 0], positions[:, 0, 1]]

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
-from ibr_ref.oracle.ports.shadows.project import Project
-from ibr_ref.oracle.ports.shadows.resolve import Resolve
-from ibr_ref.oracle.ports.shadows.surface import Picture, Surface
-from ibr_ref.oracle.ports.shadows.warp import Warp, Warped
+from ibr_ref.oracle.programs.program import Floats
+from ibr_ref.oracle.programs.shadows.project import Project
+from ibr_ref.oracle.programs.shadows.resolve import Resolve
+from ibr_ref.oracle.programs.shadows.surface import Picture, Surface
+from ibr_ref.oracle.programs.shadows.warp import Warp, Warped
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -29,7 +29,7 @@ class Port(Picture, Warp, Project, Resolve):
         arrays |= {"project.coord": self._samples(list(coords)), "project.shadow": self._samples(list(shadows))}
         arrays["accumulate.shadow"] = self.accumulated(list(shadows))
         arrays["color"] = self._color(surface, arrays["accumulate.shadow"])
-        arrays["depth"] = surface.depth.reshape(self._size)
+        arrays["depth"] = self.read_back(surface.depth.reshape(self._size))
         return arrays
 
     @property
@@ -47,9 +47,10 @@ class Port(Picture, Warp, Project, Resolve):
             return {"warp.image": self._samples(images)}, images
         positions, controls, prepared = self.positions(), self.controls(), self.images()
         arrays: Arrays = {"maps.positions": positions, "maps.image": self.nine_maps(positions), "controls": controls}
-        warps = [self.warped(place, controls, prepared) for place in self.places]
+        lines = self.lines()
+        warps = [self.warped(place, controls, prepared, lines) for place in self.places]
         if self.projective:
-            arrays["maps.depths"] = self.caster_depths()
+            arrays["maps.depths"] = self.caster_depths(lines)
         for name in Warped.__dataclass_fields__:
             if name == "shares" and not self.projective:
                 continue
@@ -67,5 +68,5 @@ class Port(Picture, Warp, Project, Resolve):
         """(H, W, 3)."""
         height, width = self._size
         colors = np.broadcast_to(self.background(), (height * width, 3)).copy()
-        colors[surface.pixel] = self.resolved(surface, shadow.reshape(-1)[surface.pixel])
-        return self.ops.color(colors.reshape(height, width, 3))
+        colors[surface.pixel] = np.stack(self.resolved(surface, shadow.reshape(-1)[surface.pixel]), axis=-1)
+        return self.turned_rows(self.written(self.do.color(colors.reshape(height, width, 3))))

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from ibr_ref.array_types import Floats, Ints
-from ibr_ref.oracle.arithmetic.device import Arithmetic
+from ibr_ref.oracle.programs.program import Floats, Ints, right
 
 
 class Sampler:
     """Clamped fetches from images (H, W) at (u, v) in [0, 1], row 0 at v = 0."""
 
-    def __init__(self, ops: Arithmetic) -> None:
-        self.ops = ops
+    def __init__(self, do: Any) -> None:
+        self.do = do
 
     def wrap(self, index: Ints, size: int) -> Ints:
         """The texel that an index means."""
@@ -20,11 +21,11 @@ class Sampler:
 
     def position(self, u: Floats, size: int) -> Floats:
         """In texels, from the centre of the first."""
-        return self.ops.subtract(self.ops.multiply(u, size), 0.5)
+        return self.do.subtract(self.do.multiply(u, size), 0.5)
 
     def index(self, u: Floats, size: int) -> Ints:
         """The texel that holds u."""
-        return np.floor(self.ops.multiply(u, size)).astype(np.int64)
+        return self.do.whole(self.do.multiply(u, size)).astype(np.int64)
 
     def texel(self, image: Floats, column: Ints, row: Ints) -> Floats:
         """As it is held."""
@@ -40,16 +41,18 @@ class Sampler:
         """The four texels around, t00, t10, t01, t11, and the weights of the right and the lower ones."""
         height, width = image.shape
         x, y = self.position(u, width), self.position(v, height)
-        left, top = np.floor(x), np.floor(y)
+        left, top = self.do.whole(x), self.do.whole(y)
         column, row = left.astype(np.int64), top.astype(np.int64)
         texels = [self.texel(image, column + i, row + j) for j in (0, 1) for i in (0, 1)]
-        return texels, self.ops.weight(self.ops.subtract(x, left)), self.ops.weight(self.ops.subtract(y, top))
+        return texels, self.do.weight(self.do.subtract(x, left)), self.do.weight(self.do.subtract(y, top))
 
     def mix(self, texels: list[Floats], fx: Floats, fy: Floats) -> Floats:
         """Of four texels by their weights."""
-        upper, lower = (self.ops.filtered(self.ops.lerp(texels[k], texels[k + 1], fx), texels) for k in (0, 2))
-        return self.ops.filtered(self.ops.lerp(upper, lower, fy), texels)
+        upper, lower = (self.do.filtered(self.do.lerp(texels[k], texels[k + 1], fx), texels) for k in (0, 2))
+        return self.do.filtered(self.do.lerp(upper, lower, fy), texels)
 
     def bilinear(self, image: Floats, u: Floats, v: Floats) -> Floats:
-        """The mix of the four texels around."""
+        """The mix of the four texels around. Of the right filter the bounds are known as a whole."""
+        if self.do.bounded and right(self, "wrap", "position", "texel", "taps", "mix"):
+            return self.do.fetch(image, u, v, repeat=False)
         return self.mix(*self.taps(image, u, v))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ibr_ref.array_types import Bools, Floats, Ints
-from ibr_ref.oracle.arithmetic.device import Arithmetic
+from ibr_ref.oracle.programs.program import Bools, Floats, Ints
 
+NEAR, FAR = 0, 1
 MOST_PAIRS = 2**20
 """Of triangles and pixels that are looked at together."""
 
@@ -36,18 +37,21 @@ class Fragments:
 class Raster:
     """What all passes share; a pass may have one of its own."""
 
-    def __init__(self, ops: Arithmetic) -> None:
-        self.ops = ops
-
-    def transform(self, matrix: Floats, point: Sequence[Floats]) -> list[Floats]:
-        """(4, 4) times (x, y, z, w), row by row."""
-        return [self.ops.dot(list(row), point) for row in self.ops.number(matrix)]
+    def __init__(self, do: Any) -> None:
+        self.do = do
 
     # Clipping
 
+    planes: ClassVar[tuple[int, ...]] = (NEAR, FAR)
+    """That triangles are clipped against, in turn."""
+
     def distances(self, corner: Floats) -> list[Floats]:
-        """Of (..., K >= 4) clip coordinates from the near plane and the far one, negative outside."""
-        return [corner[..., 2], self.ops.subtract(corner[..., 3], corner[..., 2])]
+        """Of (..., K >= 4) clip coordinates from the planes, negative outside."""
+        return [self.distance(corner, plane) for plane in self.planes]
+
+    def distance(self, corner: Floats, plane: int) -> Floats:
+        """From one of them."""
+        return corner[..., 2] if plane == NEAR else self.do.subtract(corner[..., 3], corner[..., 2])
 
     def clip(self, corners: Floats) -> tuple[Floats, Ints]:
         """(T, 3, K) corners, clip coordinates first, against near, then far: (T', 3, K), and the triangle of each (T',)."""
@@ -74,24 +78,30 @@ class Raster:
             if here >= 0.0:
                 result.append(current)
             if (here >= 0.0) != (there >= 0.0):
-                share = self.ops.divide(here, self.ops.subtract(here, there))
-                result.append(self.ops.lerp(current, following, share))
+                share = self.do.divide(here, self.do.subtract(here, there))
+                result.append(self.do.lerp(current, following, share))
         return result
 
     # From clip space to the window
 
     def window(self, corners: Floats, width: int, height: int) -> tuple[Floats, Floats, Floats]:
         """Window x, y and depth, each (T, 3), of corners (T, 3, K)."""
-        x, y, z = (self.ops.divide(corners[..., i], corners[..., 3]) for i in range(3))
+        x, y, z = (self.do.divide(corners[..., i], corners[..., 3]) for i in range(3))
         return self.column(x, width), self.row(y, height), z
 
     def column(self, x: Floats, width: int) -> Floats:
         """Window x of NDC."""
-        return self.ops.multiply(self.ops.multiply(self.ops.add(x, 1.0), 0.5), width)
+        return self.in_window(self.do.add(x, 1.0), x, width)
 
     def row(self, y: Floats, height: int) -> Floats:
         """Window y of NDC: downwards."""
-        return self.ops.multiply(self.ops.multiply(self.ops.subtract(1.0, y), 0.5), height)
+        return self.in_window(self.do.subtract(1.0, y), -y, height)
+
+    def in_window(self, from_border: Floats, from_middle: Floats, size: int) -> Floats:
+        """A coordinate from the window's border, or from its middle, in pixels."""
+        do, half = self.do, 0.5 * size
+        found = do.multiply(do.multiply(from_border, 0.5), float(size))
+        return do.either(found, lambda: do.add(do.multiply(from_middle, half), half))
 
     # Coverage
 
@@ -109,7 +119,7 @@ class Raster:
 
     def cover(self, x: Floats, y: Floats, width: int, height: int) -> Fragments:
         """The fragments of triangles with window corners x, y (T, 3), in submission order."""
-        snapped = self.ops.snap(x), self.ops.snap(y)
+        snapped = self.do.snap(x), self.do.snap(y)
         columns, rows = self._span(snapped[0], width), self._span(snapped[1], height)
         wide, tall = (np.maximum(high - low + 1, 0) for low, high in (columns, rows))
         pairs = wide * tall
@@ -139,7 +149,7 @@ class Raster:
         width: int,
     ) -> Fragments:
         """The pairs of triangle and pixel where the pixel's centre is inside, by exact arithmetic on snapped corners."""
-        units = 2.0**self.ops.policy.subpixel_bits
+        units = 2.0**self.do.policy.subpixel_bits
         x, y = (np.rint(corners * units).astype(np.int64)[triangle] for corners in snapped)
         px, py = (np.rint(self.centre(pixel) * units).astype(np.int64) for pixel in (column, row))
         sign = np.sign(_edge(x, y, 2, x[:, 2], y[:, 2]))  # of the area
@@ -152,45 +162,43 @@ class Raster:
             covered &= self.inside(edge, owned)
         kept = np.flatnonzero(covered)
         triangle, pixel = triangle[kept], row[kept] * width + column[kept]
-        if self.ops.policy.snapped_varyings:
-            e0, e1, e2 = (self.ops.number(edge[kept]) for edge in edges)
-            return Fragments(triangle, pixel, (e0, e1, e2), self.ops.number(sum(edge[kept] for edge in edges)))
+        if self.do.policy.snapped_varyings:
+            e0, e1, e2 = (self.do.number(edge[kept]) for edge in edges)
+            return Fragments(triangle, pixel, (e0, e1, e2), self.do.number(sum(edge[kept] for edge in edges)))
         return self._unsnapped(window, triangle, pixel, (self.centre(column[kept]), self.centre(row[kept])), sign[kept])
 
     def _unsnapped(
         self, window: tuple[Floats, Floats], triangle: Ints, pixel: Ints, centre: tuple[Floats, Floats], sign: Ints
     ) -> Fragments:
         """Edge functions of the triangles as they were before snapping: slightly negative at some borders."""
-        ops, (x, y), (px, py) = self.ops, (corners[triangle] for corners in window), centre
+        do, (x, y), (px, py) = self.do, (corners[triangle] for corners in window), centre
         edges = []
         for i in range(3):
             a, b = (i + 1) % 3, (i + 2) % 3
-            dx, dy = ops.subtract(x[:, b], x[:, a]), ops.subtract(y[:, b], y[:, a])
-            across = ops.subtract(
-                ops.multiply(dx, ops.subtract(py, y[:, a])), ops.multiply(dy, ops.subtract(px, x[:, a]))
-            )
+            dx, dy = do.subtract(x[:, b], x[:, a]), do.subtract(y[:, b], y[:, a])
+            across = do.subtract(do.multiply(dx, do.subtract(py, y[:, a])), do.multiply(dy, do.subtract(px, x[:, a])))
             edges.append(sign * across)
-        return Fragments(triangle, pixel, (edges[0], edges[1], edges[2]), ops.sum(edges))
+        return Fragments(triangle, pixel, (edges[0], edges[1], edges[2]), do.sum(edges))
 
     # Varyings
 
     def linear(self, fragments: Fragments, corners: Floats) -> Floats:
         """(N,) of values (T, 3): linear in the window."""
-        shares = [self.ops.divide(edge, fragments.area) for edge in fragments.edges]
-        return self.ops.dot(shares, list(corners[fragments.triangle].T))
+        shares = [self.do.divide(edge, fragments.area) for edge in fragments.edges]
+        return self.do.dot(shares, list(corners[fragments.triangle].T))
 
     def perspective(self, fragments: Fragments, w: Floats, varyings: Sequence[Floats]) -> list[Floats]:
         """Each (N,), of values (T, 3) at corners whose clip w is (T, 3): linear in space."""
-        ops, ws = self.ops, w[fragments.triangle].T
-        below = ops.sum([ops.divide(edge, at) for edge, at in zip(fragments.edges, ws, strict=True)])
+        do, ws = self.do, w[fragments.triangle].T
+        below = do.sum([do.divide(edge, at) for edge, at in zip(fragments.edges, ws, strict=True)])
         result = []
         for varying in varyings:
             corners = varying[fragments.triangle].T
             terms = [
-                ops.divide(ops.multiply(edge, value), at)
+                do.divide(do.multiply(edge, value), at)
                 for edge, value, at in zip(fragments.edges, corners, ws, strict=True)
             ]
-            result.append(ops.divide(ops.sum(terms), below))
+            result.append(do.divide(do.sum(terms), below))
         return result
 
     # Output merger
