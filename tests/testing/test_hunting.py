@@ -114,7 +114,7 @@ def test_arrays_that_are_all_right_make_a_right_picture() -> None:
     for name in ("march.hit", "shade.lit", "depth"):
         assert not judging._whole(case, {key: array for key, array in arrays.items() if key != name})
     wrong = {**arrays, "color": 0.5 * arrays["color"]}
-    assert bug_of(case, drawing(lambda case: wrong), None) == Bug("displacement", "resolve", "color")
+    assert bug_of(case, drawing(lambda case: wrong), None) == Bug("displacement", "shade", "color")
 
 
 def test_a_right_port_has_none_and_the_time_is_kept() -> None:
