@@ -18,11 +18,10 @@ def run(a: Path, b: Path, out: Path | None) -> None:
     """Say and write what differs. Raises OSError or ValueError for what is no run's file."""
     from ibr_ref.io.outputs import atomic, make_folder
 
-    runs = [_read(path) for path in (a, b)]
-    facts = [(name, *(_said(each[name]) for each in runs)) for name in _FACTS]
-    by_case = [{row["case"]: row for row in each["cases"]} for each in runs]
-    names = dict.fromkeys(name for rows in by_case for name in rows)
-    cases = [(name, *(_verdict(rows.get(name)) for rows in by_case)) for name in names]
+    first, second = _read(a), _read(b)
+    facts = [(name, _said(first[name]), _said(second[name])) for name in _FACTS]
+    mine, theirs = ({row["case"]: row for row in each["cases"]} for each in (first, second))
+    cases = [(name, _verdict(mine.get(name)), _verdict(theirs.get(name))) for name in {**mine, **theirs}]
     different = [row for row in cases if row[1].split(",")[0] != row[2].split(",")[0]]
     if out is not None:
         from ibr_ref.oracle.report.page import asset, template

@@ -75,7 +75,8 @@ def command(
     if compare is not None:
         from ibr_ref.cli.compared_runs import run
 
-        return run(*compare, out)
+        run(*compare, out)
+        return
     choices = _chosen(case)
     if out is not None:
         make_folder(out)
@@ -104,7 +105,7 @@ def _facts(drawer: Drawer, folder: Path) -> Facts:
     from ibr_ref.oracle.probe import PROBES, Measured
     from ibr_ref.oracle.report import Facts
 
-    measured, unmeasured = Measured(faults=drawer.faults), {}
+    measured, unmeasured = Measured(faults=drawer.faults), dict[str, str]()
     for name, room in PROBES.items():
         probe = room.open()
         case, drawing = probe.probe_case(), folder / "drawn" / name
@@ -133,7 +134,7 @@ def _judged(drawer: Drawer, choices: Sequence[Choice], folder: Path, facts: Fact
     from ibr_ref.oracle import files
     from ibr_ref.oracle.declaration import of_fields
 
-    device, findings = of_fields({**facts.declares, **facts.measured.numbers}), []
+    device, findings = of_fields({**facts.declares, **facts.measured.numbers}), list[Finding]()
     with progress(len(choices)) as step:
         for each in choices:
             step(each.name)

@@ -48,7 +48,8 @@ def _in_the_way_of(mutant: Mutant, variant: Variant) -> type[PlainPort]:
     """The mutant with the order of operations of a right port."""
     if variant.port is None or issubclass(mutant.port, variant.port):
         return mutant.port
-    return type(mutant.port.__name__, (mutant.port, variant.port), {})
+    mixed: type[PlainPort] = type(mutant.port.__name__, (mutant.port, variant.port), {})
+    return mixed
 
 
 def _killed(port: type[PlainPort], variant: Variant | None, cases: Sequence[Case], device: Device) -> str | None:

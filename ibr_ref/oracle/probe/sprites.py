@@ -43,7 +43,7 @@ def probe_case() -> Case:
     """Points before a camera of parallel lines of sight, as wide as they are near: from .4 to 6 pixels."""
     random = np.random.default_rng(5)
     columns, rows = GRID
-    size = {"view_height": float(rows), "near": 0.5, "far": 30.0}
+    size: dict[str, Any] = {"view_height": float(rows), "near": 0.5, "far": 30.0}
     source = Camera.orthographic(
         eye=(0.0, 0.0, 12.0), target=(0, 0, 0), up=(0, 1, 0), width=columns, height=rows, **size
     )
@@ -80,7 +80,7 @@ def measure(case: Case, arrays: Mapping[str, Any]) -> Measured:
     window, width = (np.asarray(arrays[name], np.float64) for name in NEEDED[:2])
     if window.shape != (GRID[0] * GRID[1], 2) or width.shape != window.shape[:1]:
         raise checks.reject("vertex.window", window.shape, "a row for each point")
-    why, faults = {}, {}
+    why, faults = dict[str, str](), dict[str, str]()
     found = [_offset(np.array([*_intervals(shown, window, width, axis)]).reshape(-1, 2)) for axis in (0, 1)]
     if None not in found:
         x, y = (float(each or 0.0) for each in found)
