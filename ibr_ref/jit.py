@@ -36,6 +36,8 @@ from numba.core import config as _config
 from numba.core import event
 from platformdirs import user_cache_path
 
+from ibr_ref.linking import DeviceCompiler, KernelCompiler
+
 __all__ = ["LANES", "compilations", "device", "functions", "kernel", "prange", "routine", "threads"]
 
 config: Any = _config  # its attributes are made at run time
@@ -47,6 +49,8 @@ SERIAL = os.environ.get("IBR_REF_SERIAL", "0") not in ("", "0")
 
 functions: list[Any] = []
 """All compiled functions of the modules imported so far (what a progress bar counts against)."""
+
+njit: Any = numba.njit  # its stubs do not know all options
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -65,7 +69,9 @@ def _sources(room: str) -> list[Path]:
     Methods do not import each other (a contract in pyproject.toml); a kernel outside the package may use all of it.
     """
     folders = {PACKAGE / "pipeline", PACKAGE / room} if room else {PACKAGE}
-    return sorted({Path(__file__), *(source for folder in folders for source in folder.rglob("*.py"))})
+    return sorted(
+        {Path(__file__), PACKAGE / "linking.py", *(source for folder in folders for source in folder.rglob("*.py"))}
+    )
 
 
 def _digest(room: str) -> str:
@@ -106,7 +112,15 @@ def _entry(function: Function, parallel: bool) -> Function:
     # Read while decorating; restored, because other packages read it too.
     config.CACHE_DIR = "" if config.DISABLE_JIT else _cache_directory(_room(function))
     try:
-        compiled = numba.njit(parallel=parallel, error_model="numpy", fastmath=False, cache=True, nogil=True)(function)
+        compiled = njit(
+            parallel=parallel,
+            error_model="numpy",
+            fastmath=False,
+            cache=True,
+            nogil=True,
+            no_cfunc_wrapper=True,
+            pipeline_class=KernelCompiler,
+        )(function)
     finally:
         config.CACHE_DIR = before
     functions.append(compiled)
@@ -129,13 +143,12 @@ def device(function: Function) -> Function:
     The wrappers that let Python call it would take a fifth of all compilation. Where Python does, as tests do, the call
     goes to another compilation that has them.
     """
-    njit: Any = numba.njit  # its stubs do not know all options
     options = {"error_model": "numpy", "fastmath": False}
-    compiled = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)(function)
+    compiled = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, pipeline_class=DeviceCompiler, **options)(function)
     if not config.DISABLE_JIT:
-        for_python = njit(**options)(function)
+        for_python = cache(lambda: njit(**options)(function))
         compiled._insert = lambda *overload, **options: None  # so that a call from Python finds nothing compiled ...
-        compiled._compile_for_args = lambda *arguments, **options: for_python  # ... and gets this instead
+        compiled._compile_for_args = lambda *arguments, **options: for_python()  # ... and gets this instead
     functions.append(compiled)
     return cast(Function, compiled)
 

@@ -85,12 +85,8 @@ def _own(
     source: str,
     judged: tuple[str, tuple[str, ...]],
     inputs: tuple[str, ...] = (),
-    plain_port: str = "faults",
 ) -> Method:
-    """A method of this package, whose rooms are where those of all its methods are.
-
-    plain_port: of the oracle's rooms the one with its port, variants and mutants; "faults" where the port is a program.
-    """
+    """A method of this package, whose rooms are where those of all its methods are."""
     return Method(
         name=name,
         paper=paper,
@@ -105,7 +101,7 @@ def _own(
         schema=Room(f"ibr_ref.oracle.schema.{name}:SCHEMA"),
         referee=Room(f"ibr_ref.oracle.referees.{name}:{name.capitalize()}Referee"),
         reads=Room(f"ibr_ref.oracle.referees.reads:{name.upper()}"),
-        plain_port=Room(f"ibr_ref.oracle.{plain_port}.{name}"),
+        plain_port=Room(f"ibr_ref.oracle.faults.{name}"),
         sample_ports={language: Room(f"ibr_ref.ports.{language}.{name}:Port") for language in ("glsl", "wgsl")},
         command=Room(f"ibr_ref.cli.{name}"),
         viewable=Room(f"ibr_ref.viewer.{name}:VIEWABLE"),
@@ -123,7 +119,7 @@ _JUDGED_SEARCHES = ("protruded", "relief", "welsh", "mcguire", "tatarchuk", "con
 _METHODS = {method.name: method for method in (
     _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", _JUDGED_SEARCHES)),
     _own("splatting", 2, "Splatting of depth images", "Lee & Park 2006", ("shape", ("square", "disc")), ("normals",)),
-    _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", ("warp", "direct")), ("maps",), "ports"),
+    _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", ("warp", "direct")), ("maps",)),
 )}
 # fmt: on
 

@@ -22,11 +22,11 @@ def _rooms(room: str) -> set[str]:
 
 
 def test_a_method_s_kernels_hang_on_the_pipeline_and_on_their_own_folder() -> None:
-    assert _rooms("displacement") == {"jit.py", "pipeline", "displacement"}
+    assert _rooms("displacement") == {"jit.py", "linking.py", "pipeline", "displacement"}
 
 
 def test_the_pipeline_s_kernels_hang_on_no_method() -> None:
-    assert _rooms("pipeline") == {"jit.py", "pipeline"}
+    assert _rooms("pipeline") == {"jit.py", "linking.py", "pipeline"}
 
 
 def test_kernels_outside_the_package_may_hang_on_all_of_it() -> None:

@@ -12,8 +12,7 @@ import typer
 
 from ibr_ref import methods
 from ibr_ref.cli import json_output
-from ibr_ref.cli.judging import Finding, Judging, worst
-from ibr_ref.cli.tables import counted
+from ibr_ref.cli.judging import Finding, Judging, lines, worst
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.progress import progress
 
@@ -100,12 +99,15 @@ def command(
         bool, typer.Option("--self-test", help="Try the oracle on right ports and on broken ones, and print the table.")
     ] = False,
     method: Annotated[str | None, typer.Option(help=f"--self-test: {_METHODS} alone.")] = None,
+    coarse: Annotated[
+        bool, typer.Option("--coarse", help="--self-test: are bugs seen on devices of fewer bits and more freedom too?")
+    ] = False,
 ) -> None:
     """Say whether a port's pictures are right, and if not, where they first go wrong."""
     if self_test:
-        from ibr_ref.cli.self_test import run
+        from ibr_ref.cli.self_test import run, run_coarse
 
-        raise typer.Exit(run(method, json))
+        raise typer.Exit((run_coarse if coarse else run)(method, json))
     if case is None or port is None:
         raise typer.BadParameter("found too few folders, allowed: CASE and PORT, or --self-test")
     judging = Judging(case, port, device)
@@ -135,8 +137,8 @@ def _checked(judging: Judging, outputs: Outputs, fail_fast: bool) -> int:
     for finding in findings:
         if finding.warning is not None:
             typer.echo(f"ibr-ref: {finding.warning}", err=True)
-    lines = _table(findings, len(jobs)) if judging.many else [findings[0].verdict.words()]
-    typer.echo("\n".join(lines), err=aside)
+    said = lines(findings, len(jobs)) if judging.many else [findings[0].verdict.words()]
+    typer.echo("\n".join(said), err=aside)
     return worst(findings)
 
 
@@ -202,30 +204,3 @@ def _write(findings: Sequence[Finding], outputs: Outputs, *, many: bool) -> None
 
         with atomic(outputs.junit) as file:
             file.write(junit((finding.verdict, finding.seconds) for finding in findings))
-
-
-def _table(findings: Sequence[Finding], jobs: int) -> list[str]:
-    """A line a case, and one of all."""
-    width = max(len(finding.name) for finding in findings)
-    lines = [f"{finding.verdict.outcome:12}  {finding.name:{width}}  {_said(finding)}" for finding in findings]
-    counts = [finding.verdict.outcome for finding in findings]
-    said = ", ".join(f"{counts.count(outcome)} {outcome}" for outcome in dict.fromkeys(sorted(counts, key=str)))
-    left = jobs - len(findings)
-    return [*lines, f"{counted(len(findings), 'case')}: {said}" + (f"; {left} not tried." if left else ".")]
-
-
-def _said(finding: Finding) -> str:
-    """The rest of its line."""
-    verdict = finding.verdict
-    if verdict.reasons:
-        return verdict.reasons[0]
-    how = f"on {verdict.device}"
-    first = next((stage for stage in verdict.stages if stage.wrong), None)
-    if first is not None:
-        blamed = ", ".join(first.blamed)
-        how = f"first wrong in {first.stage}: {first.wrong:,} of {first.elements:,} elements, {blamed} ({how})"
-        if verdict.causes:
-            how += f", explained by {' or '.join(cause.name for cause in verdict.causes)}"
-    elif verdict.biases:
-        how = f"first wrong in {verdict.first_wrong_stage}: {verdict.biases[0].parameter} ({how})"
-    return f"{how}, {finding.seconds:.1f} s"

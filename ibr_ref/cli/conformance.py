@@ -13,11 +13,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ibr_ref.cli.draw import Port
-from ibr_ref.cli.judging import Finding, Judging, worst
+from ibr_ref.cli.judging import Finding, lines, worst
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
     from ibr_ref.oracle.choice import Choice
+    from ibr_ref.oracle.declaration import Declaration
+    from ibr_ref.oracle.examination import Examination
+    from ibr_ref.oracle.report import Facts
     from ibr_ref.ports.drawing import Drawer
 
 EXAMPLES = """
@@ -28,9 +31,13 @@ Examples:
     ibr-ref conformance "shadows-*" --with wgsl --adapter vulkan
 
     ibr-ref conformance all --with webgl --out my-browser
+
+    ibr-ref conformance --compare my-gpu/conformance.json my-browser/conformance.json --out both
 """
 SMALL = "small"
 """Every built-in case but those of real size."""
+NUMBERS = "conformance.json"
+"""The run's file in its folder."""
 
 
 def command(
@@ -52,22 +59,33 @@ def command(
             show_default=False,
         ),
     ] = None,
+    compare: Annotated[
+        tuple[Path, Path] | None,
+        typer.Option(metavar="A.json B.json", help="Two runs beside each other instead.", show_default=False),
+    ] = None,
 ) -> None:
-    """Draw cases with a sample port on this machine's device, and judge whether its driver is right.
+    """Measure this machine's device, draw cases with a sample port, and judge whether its driver is right.
 
-    Exit code 0: all pass, 1: a case fails, 2: a case cannot be judged.
+    A case is judged by the device that was measured, and where that one does not explain it, by any. Exit code 0: all pass,
+    1: a case fails, 2: a case cannot be judged.
     """
     from ibr_ref.io.outputs import make_folder
     from ibr_ref.ports.drawing import SAMPLES
 
+    if compare is not None:
+        from ibr_ref.cli.compared_runs import run
+
+        return run(*compare, out)
     choices = _chosen(case)
     if out is not None:
         make_folder(out)
     with closing(SAMPLES[with_.value](adapter)) as drawer, tempfile.TemporaryDirectory() as temporary:
-        findings = _judged(drawer, choices, Path(temporary) if out is None else out)
+        folder = Path(temporary) if out is None else out
+        facts = _facts(drawer, folder)
+        findings = _judged(drawer, choices, folder, facts)
     if out is not None:
-        _write(drawer, findings, out)
-    typer.echo("\n".join([f"{drawer.name} on {drawer.words}", *_lines(findings)]))
+        _write(facts, findings, out)
+    typer.echo("\n".join([*_words(facts), *lines(findings, len(findings))]))
     raise typer.Exit(worst(findings))
 
 
@@ -79,26 +97,67 @@ def _chosen(word: str) -> list[Choice]:
     return [each for each in choice.chosen([choice.ALL]) if each.make().kind != "real-sized"]
 
 
-def _judged(drawer: Drawer, choices: Sequence[Choice], folder: Path) -> list[Finding]:
+def _facts(drawer: Drawer, folder: Path) -> Facts:
+    """What the probes say of the device."""
+    from ibr_ref import oracle
+    from ibr_ref.oracle import files
+    from ibr_ref.oracle.probe import PROBES, Measured
+    from ibr_ref.oracle.report import Facts
+
+    measured, unmeasured = Measured(faults=drawer.faults), {}
+    for name, room in PROBES.items():
+        probe = room.open()
+        case, drawing = probe.probe_case(), folder / "drawn" / name
+        files.export(case, folder / "cases" / name, force=True)
+        try:
+            drawer.into(folder / "cases" / name, drawing)
+            measured |= probe.measure(case, oracle.load_submission(drawing, case).handed)
+        except ValueError as error:
+            unmeasured[name] = str(error)
+    return Facts(drawer.name, drawer.words, dict(drawer.declares), measured, unmeasured)
+
+
+def _words(facts: Facts) -> list[str]:
+    """The device, in lines."""
+    measured = ", ".join(f"{name} {value}" for name, value in facts.measured.numbers.items())
+    return [
+        f"{facts.port} on {facts.words}",
+        f"measured: {measured or 'nothing'}",
+        *(f"probe not drawn: {name}: {why}" for name, why in facts.unmeasured.items()),
+        *(f"fault of the driver: {name}: {why}" for name, _, why in facts.faults),
+    ]
+
+
+def _judged(drawer: Drawer, choices: Sequence[Choice], folder: Path, facts: Facts) -> list[Finding]:
     """Export, draw and check each."""
     from ibr_ref.oracle import files
+    from ibr_ref.oracle.declaration import of_fields
 
-    findings = []
+    device, findings = of_fields({**facts.declares, **facts.measured.numbers}), []
     with progress(len(choices)) as step:
         for each in choices:
             step(each.name)
-            case, drawing = folder / "cases" / each.name, folder / "drawn" / each.name
-            started = time.perf_counter()
-            files.export(each.make(), case, force=True)
+            drawing = folder / "drawn" / each.name
+            started, case = time.perf_counter(), each.make()
+            files.export(case, folder / "cases" / each.name, force=True)
             try:
-                drawer.into(case, drawing)
+                drawer.into(folder / "cases" / each.name, drawing)
             except ValueError as error:
                 findings.append(_refused(each.name, str(error)))
                 continue
-            ((_, judge),) = Judging(str(case), drawing, None).jobs()
-            found = judge()
-            findings.append(Finding(each.name, found.verdict, found.examination, time.perf_counter() - started))
+            found = _examined(case, drawing, device)
+            findings.append(Finding(each.name, found.verdict, found, time.perf_counter() - started))
     return findings
+
+
+def _examined(case: Any, drawing: Path, device: Declaration) -> Examination:
+    """By a device, or by any where that one does not explain all."""
+    from ibr_ref import oracle
+    from ibr_ref.oracle.declaration import ANY
+
+    submission = oracle.load_submission(drawing, case)
+    found = oracle.check(case, submission, profile=device, name_causes=False)
+    return found if not found.verdict.outcome.exit_code else oracle.check(case, submission, profile=ANY)
 
 
 def _refused(name: str, reason: str) -> Finding:
@@ -108,62 +167,46 @@ def _refused(name: str, reason: str) -> Finding:
     return Finding(name, Verdict(outcome=Outcome.INCONCLUSIVE, case=name, method="", reasons=(reason,)), None, 0.0)
 
 
-def _summary(finding: Finding) -> dict[str, Any]:
-    """A case's row."""
+def _row(finding: Finding) -> dict[str, Any]:
+    """A case's, in the file."""
     verdict = finding.verdict
     wrong = next((stage for stage in verdict.stages if stage.wrong), None)
-    blamed = f"{wrong.wrong:,} of {wrong.elements:,} elements, {', '.join(wrong.blamed)}" if wrong is not None else ""
     return {
         "case": finding.name,
         "outcome": str(verdict.outcome),
         "device": verdict.device,
         "undecided": verdict.undecided_share,
         "first_wrong_stage": verdict.first_wrong_stage,
-        "wrong": blamed,
+        "wrong": wrong.wrong if wrong is not None else 0,
+        "elements": wrong.elements if wrong is not None else 0,
         "reasons": list(verdict.reasons),
         "seconds": round(finding.seconds, 2),
     }
 
 
-def _lines(findings: Sequence[Finding]) -> list[str]:
-    rows = [_summary(finding) for finding in findings]
-    width = max(len(row["case"]) for row in rows)
-    lines = []
-    for row in rows:
-        said = row["reasons"] or ([f"{row['first_wrong_stage']}: {row['wrong']}"] if row["first_wrong_stage"] else [])
-        lines.append(f"{row['outcome']:12}  {row['case']:{width}}  {said[0] if said else 'on ' + row['device']}")
-    outcomes = [row["outcome"] for row in rows]
-    counts = ", ".join(f"{outcomes.count(outcome)} {outcome}" for outcome in sorted(set(outcomes)))
-    return [*lines, f"{len(rows)} cases: {counts}."]
-
-
-def _write(drawer: Drawer, findings: Sequence[Finding], out: Path) -> None:
+def _write(facts: Facts, findings: Sequence[Finding], out: Path) -> None:
     """index.html and conformance.json, and a report of each case that does not pass."""
     from ibr_ref import oracle
     from ibr_ref.io.outputs import atomic
+    from ibr_ref.oracle.report import entry, write_run
 
-    rows = [_summary(finding) for finding in findings]
-    facts = {"port": drawer.name, "device": drawer.words, "declares": dict(drawer.declares)}
-    reports = {}
+    entries = []
     for finding in findings:
-        if finding.examination is not None and finding.verdict.outcome.exit_code:
-            reports[finding.name] = f"{finding.name}.html"
-            oracle.write_report(finding.examination, out / reports[finding.name])
-    with atomic(out / "conformance.json") as file:
-        file.write((json.dumps({**facts, "cases": rows}, indent=2) + "\n").encode())
-    with atomic(out / "index.html") as file:
-        file.write(_page(facts, rows, reports).encode())
-
-
-def _page(facts: dict[str, Any], rows: Sequence[dict[str, Any]], reports: dict[str, str]) -> str:
-    """One page: the device, and a line a case."""
-    from importlib import resources
-
-    from jinja2 import Environment
-
-    source = resources.files("ibr_ref.cli").joinpath("conformance.html").read_text("utf-8")
-    return (
-        Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
-        .from_string(source)
-        .render(facts=facts, rows=rows, reports=reports, passed=sum(row["outcome"] == "PASS" for row in rows))
-    )
+        shown = finding.examination if finding.verdict.outcome.exit_code else None
+        entries.append(entry(finding.name, finding.verdict, finding.seconds, shown))
+        if shown is not None:
+            oracle.write_report(shown, out / f"{finding.name}.html")
+    document = {
+        "port": facts.port,
+        "device": facts.words,
+        "declares": facts.declares,
+        "measured": dict(facts.measured.numbers),
+        "why": dict(facts.measured.why),
+        "assumed": facts.measured.assumed,
+        "faults": dict(facts.measured.faults),
+        "unmeasured": dict(facts.unmeasured),
+        "cases": [_row(finding) for finding in findings],
+    }
+    with atomic(out / NUMBERS) as file:
+        file.write((json.dumps(document, indent=2) + "\n").encode())
+    write_run(entries, out, facts)

@@ -63,6 +63,13 @@ def command(
         ),
     ] = False,
     method: Annotated[str | None, typer.Option(help=f"{' or '.join(methods.names())}. Without: all in turn.")] = None,
+    system: Annotated[
+        str | None,
+        typer.Option(
+            help="With --method, the one that the port draws: a search of displacement mapping (without: protruded), "
+            "square or disc, warp or direct (without: both)."
+        ),
+    ] = None,
     seconds: Annotated[
         float,
         typer.Option(
@@ -88,7 +95,7 @@ def command(
     A bug is the first wrong stage, the first of its arrays that disagrees, and where known bugs explain it, these. Found
     ones are skipped from then on.
     """
-    wanted = _checked(method, seconds, device)
+    wanted = _checked(method, system, seconds, device)
     folder = _Folder(out)
     state = folder.state()
     drawer = _drawer(port, serve, page)
@@ -103,8 +110,8 @@ def command(
             step.within(f"{hunt.tried} cases, {len(hunt.known)} bugs", int(passed), int(seconds))
 
         hunt = Hunt(
-            port=partial(port_of, drawer), methods=wanted, device=device, seed=seed, database=folder.place / "examples",
-            known=set(state.bugs), rounds=state.rounds, told=told,
+            port=partial(port_of, drawer), methods=wanted, system=system, device=device, seed=seed,
+            database=folder.place / "examples", known=set(state.bugs), rounds=state.rounds, told=told,
         )  # fmt: skip
         for found in _kept(hunt, seconds, folder):
             typer.echo(_line(found, folder.keep(found, drawer, device)))
@@ -116,7 +123,7 @@ def command(
     raise typer.Exit(1 if hunt.known else 0)
 
 
-def _checked(method: str | None, seconds: float, device: str | None) -> tuple[str, ...]:
+def _checked(method: str | None, system: str | None, seconds: float, device: str | None) -> tuple[str, ...]:
     """The methods. Raises ValueError for what cannot be used, and where Hypothesis is missing."""
     try:
         import hypothesis  # noqa: F401
@@ -126,6 +133,10 @@ def _checked(method: str | None, seconds: float, device: str | None) -> tuple[st
 
     if method is not None:
         checks.choice("method", method, methods.names())
+    if system is not None:
+        if method is None:
+            raise typer.BadParameter("found no method, allowed with --system: --method METHOD")
+        checks.choice("system", system, methods.named(method).judged[1])
     if device is not None:
         checks.choice("device", device, tuple(PROFILES))
     checks.number("seconds", seconds, above=0.0)

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ibr_ref.cli.tables import counted
+
 if TYPE_CHECKING:
     from ibr_ref.oracle.cases import Case
     from ibr_ref.oracle.choice import Choice
@@ -37,6 +39,33 @@ def worst(findings: Sequence[Finding]) -> int:
     """The exit code: 1 if any FAIL, else 2 if any INCONCLUSIVE, else 0."""
     codes = {finding.verdict.outcome.exit_code for finding in findings}
     return next((code for code in (1, 2) if code in codes), 0)
+
+
+def lines(findings: Sequence[Finding], jobs: int) -> list[str]:
+    """A line a case, and one of all."""
+    width = max(len(finding.name) for finding in findings)
+    rows = [f"{finding.verdict.outcome:12}  {finding.name:{width}}  {_said(finding)}" for finding in findings]
+    counts = [finding.verdict.outcome for finding in findings]
+    said = ", ".join(f"{counts.count(outcome)} {outcome}" for outcome in dict.fromkeys(sorted(counts, key=str)))
+    left = jobs - len(findings)
+    return [*rows, f"{counted(len(findings), 'case')}: {said}" + (f"; {left} not tried." if left else ".")]
+
+
+def _said(finding: Finding) -> str:
+    """The rest of its line."""
+    verdict = finding.verdict
+    if verdict.reasons:
+        return verdict.reasons[0]
+    how = f"on {verdict.device}"
+    first = next((stage for stage in verdict.stages if stage.wrong), None)
+    if first is not None:
+        blamed = ", ".join(first.blamed)
+        how = f"first wrong in {first.stage}: {first.wrong:,} of {first.elements:,} elements, {blamed} ({how})"
+        if verdict.causes:
+            how += f", explained by {' or '.join(cause.name for cause in verdict.causes)}"
+    elif verdict.biases:
+        how = f"first wrong in {verdict.first_wrong_stage}: {verdict.biases[0].parameter} ({how})"
+    return f"{how}, {finding.seconds:.1f} s"
 
 
 class Judging:

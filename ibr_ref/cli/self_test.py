@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 MUTANT_KINDS = ("easy", "typical", "adversarial")
 """Cases on which mutants are tried, and sight; variants are on all. The real-sized ones would take an hour."""
 
+LEAST_COARSE = 0.9
+"""Share of the bugs that a desktop's device shows that a coarser one has to show."""
+
 
 def run(method: str | None, json: Path | None = None) -> int:
     """Print the tables and the totals; the exit code: 0 if no variant is accused and no mutant unexpectedly survives."""
@@ -56,6 +59,34 @@ def run(method: str | None, json: Path | None = None) -> int:
     accused = any(variant.accused for variant in variants)
     survived = any(mutant.case is None and not mutant.mutant.survives for mutant in mutants)
     return int(accused or survived)
+
+
+def run_coarse(method: str | None, json: Path | None = None) -> int:
+    """Print how many bugs that a desktop's device shows are seen on coarser ones; the exit code: 0 if nine in ten are."""
+    from ibr_ref.oracle import self_test
+    from ibr_ref.oracle.coarse import CoarseResult, try_coarse
+    from ibr_ref.scene import checks
+
+    if method is not None:
+        checks.choice("method", method, self_test.tried())
+    json_output.check_writable(json)
+    results: list[CoarseResult] = []
+    methods = self_test.tried() if method is None else (method,)
+    with progress(sum(len(self_test.plain_port(name).MUTANTS) for name in methods)) as step:
+        for name in methods:
+            for result in try_coarse(name, kinds=MUTANT_KINDS):
+                step(f"{name}: mutant {result.mutant.name}")
+                results.append(result)
+    rows = [{"method": r.method, "mutant": r.mutant.name, "fine": r.fine, "found": dict(r.found)} for r in results]
+    json_output.write(json, encoder.dumps(rows, indent=2))
+    enough = True
+    for name in methods:
+        shown = [r for r in results if r.method == name and r.fine]
+        for device in dict.fromkeys(device for r in shown for device in r.found):
+            found = sum(r.found[device] is not None for r in shown)
+            enough &= found >= LEAST_COARSE * len(shown)
+            typer.echo(f"{name}: {found} of {len(shown)} on {device}", err=json_output.is_standard_output(json))
+    return int(not enough)
 
 
 def _as_json(variants: Sequence[VariantResult], mutants: Sequence[MutantResult], seen: Sequence[Sight]) -> str:

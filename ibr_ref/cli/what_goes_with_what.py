@@ -60,12 +60,20 @@ def _commands() -> dict[str, Callable[[], dict[str, Beside]]]:
         "hunt": _hunt,
         "draw": lambda: always("case", "folder", "with_", "adapter"),
         **{f"view {name}": partial(view.goes_with, name) for name in view.commands()},
-        "conformance": lambda: always("case", "with_", "adapter", "out"),
+        "conformance": _conformance,
         "probe": lambda: always("case", "drawn", "out"),
         "demo": lambda: always("out"),
         "bench": _bench,
         "method": lambda: always("name"),
         "reproduce": lambda: always("paper", "out", "again"),
+    }
+
+
+def _conformance() -> dict[str, Beside]:
+    drawn: Others = {"compare": ABSENT}
+    return {
+        **{name: Beside("two runs are compared, nothing is drawn", drawn) for name in ("case", "with_", "adapter")},
+        **always("out", "compare"),
     }
 
 
@@ -106,5 +114,5 @@ def _check() -> dict[str, Beside]:
         **{name: Beside("--self-test takes no folders", alone) for name in ("case", "port")},
         **{name: Beside("--self-test prints its tables alone", alone) for name in _OF_FOLDERS},
         **always("json", "self_test"),
-        "method": Beside("--method goes with --self-test", {"self_test": GIVEN}),
+        **{name: Beside(f"--{name} goes with --self-test", {"self_test": GIVEN}) for name in ("method", "coarse")},
     }

@@ -1,9 +1,9 @@
 """The search of protruded displacement mapping: linear, then binary (section 3.1), then steep or not (section 4.2).
 
 All tests are on the lattice t = k/K, K = N 2^M. Fragments run in waves: each step of the search runs over all LANES in
-an inner loop, with masks instead of branches, as a GPU does; LLVM turns those loops into SIMD gathers (`pipeline.waves`
-says when). Where to sample, the fetch, and what follows from it are loops of their own: one loop for all takes half as
-long again.
+an inner loop, with masks instead of branches, as a GPU does; LLVM turns those loops into SIMD (`pipeline.waves` says when).
+Where to sample, the fetch (`pipeline.fetches`), and what follows from it are loops of their own: one loop for all takes
+half as long again.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ import numpy as np
 from ibr_ref.displacement.buffers import load_rays, over_polygon
 from ibr_ref.displacement.maxima import highest_in, level_for
 from ibr_ref.jit import LANES, device
-from ibr_ref.pipeline.sampling import fetch, lerp
+from ibr_ref.pipeline.fetches import fetch_wave
+from ibr_ref.pipeline.sampling import lerp
 from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, smallest, store, store_indices
 
 _VOLUME_SLACK = 1e-9  # rounding of h = B_h + (C_h - B_h) t; the paper's h = 1 - t is the same number in all lanes
@@ -121,8 +122,7 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
             for lane in range(LANES):
                 p_u[lane] = u[lane] + du[lane] * t
                 p_v[lane] = v[lane] + dv[lane] * t
-            for lane in range(LANES):
-                sample[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
+            fetch_wave(texels, columns, rows, repeat, p_u, p_v, sample)
             before, stopped = stopped, 0
             for lane in range(LANES):
                 inside = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
@@ -165,8 +165,7 @@ def binary_search(repeat, rays, count, texels, columns, rows, settings, linear_i
                 p_u[lane] = u[lane] + du[lane] * t
                 p_v[lane] = v[lane] + dv[lane] * t
                 p_h[lane] = h[lane] + dh[lane] * t
-            for lane in range(LANES):
-                sample[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
+            fetch_wave(texels, columns, rows, repeat, p_u, p_v, sample)
             for lane in range(LANES):
                 covered = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
                 middle = (outside[lane] + inside[lane]) * 0.5
@@ -197,8 +196,7 @@ def heights_before(repeat, rays, count, texels, columns, rows, settings, linear_
             t = (stop[lane] - 1.0) * stride / total
             p_u[lane] = u[lane] + du[lane] * t
             p_v[lane] = v[lane] + dv[lane] * t
-        for lane in range(LANES):
-            before[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
+        fetch_wave(texels, columns, rows, repeat, p_u, p_v, before)
         for lane in range(LANES):
             inside = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
             before[lane] = before[lane] if inside & (stop[lane] > 0.0) else 0.0

@@ -11,7 +11,7 @@ import numpy as np
 from ibr_ref.displacement.buffers import load_rays
 from ibr_ref.displacement.march import STRETCH, clearances, wave_bounds
 from ibr_ref.jit import LANES, device
-from ibr_ref.pipeline.sampling import fetch
+from ibr_ref.pipeline.fetches import fetch_wave
 from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, store
 
 
@@ -76,8 +76,7 @@ def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings,
             for lane in range(LANES):
                 p_u[lane] = u[lane] + du[lane] * t
                 p_v[lane] = v[lane] + dv[lane] * t
-            for lane in range(LANES):
-                sample[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
+            fetch_wave(texels, columns, rows, repeat, p_u, p_v, sample)
             for lane in range(LANES):
                 p_h = h[lane] + dh[lane] * t
                 distance = abs(p_h - sample[lane])
@@ -115,8 +114,7 @@ def binary_margins(repeat, rays, count, texels, columns, rows, settings, linear_
                 p_u[lane] = u[lane] + du[lane] * t
                 p_v[lane] = v[lane] + dv[lane] * t
                 p_h[lane] = h[lane] + dh[lane] * t
-            for lane in range(LANES):
-                sample[lane] = fetch(texels, columns, rows, repeat, p_u[lane], p_v[lane])
+            fetch_wave(texels, columns, rows, repeat, p_u, p_v, sample)
             for lane in range(LANES):
                 distance = abs(p_h[lane] - sample[lane])
                 covered = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)

@@ -8,8 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.jit import LANES, device
+from ibr_ref.pipeline.fetches import fetch_color_wave, fetch_wave
 from ibr_ref.pipeline.lighting import homogeneous, light_wave, lit_channel, unit
-from ibr_ref.pipeline.sampling import fetch, footprint, mix_channel
+from ibr_ref.pipeline.sampling import footprint, mix_channel
 from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, store
 
 _LEAST_DIFFERENCE = 2.0**-16  # a smaller difference of heights is rounding, not a slope
@@ -34,20 +35,25 @@ def _slope(ahead, behind, size):
 def slopes(repeat, hits, count, texels, columns, rows, slope):
     """(g_u, g_v), the gradient of the height map at the hits, from one texel to either side."""
     step_u, step_v = 1.0 / columns, 1.0 / rows
-    u, v, ahead, g_u, g_v = lanes(), lanes(), lanes(), lanes(), lanes()
+    u, v, before, after = lanes(), lanes(), lanes(), lanes()
+    ahead, behind, g_u, g_v = lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
         if nothing_kept(hits, first):
             continue
         load(hits.u, first, u)
         load(hits.v, first, v)
         for lane in range(LANES):
-            ahead[lane] = fetch(texels, columns, rows, repeat, u[lane] + step_u, v[lane])
+            after[lane], before[lane] = u[lane] + step_u, u[lane] - step_u
+        fetch_wave(texels, columns, rows, repeat, after, v, ahead)
+        fetch_wave(texels, columns, rows, repeat, before, v, behind)
         for lane in range(LANES):
-            g_u[lane] = _slope(ahead[lane], fetch(texels, columns, rows, repeat, u[lane] - step_u, v[lane]), columns)
+            g_u[lane] = _slope(ahead[lane], behind[lane], columns)
         for lane in range(LANES):
-            ahead[lane] = fetch(texels, columns, rows, repeat, u[lane], v[lane] + step_v)
+            after[lane], before[lane] = v[lane] + step_v, v[lane] - step_v
+        fetch_wave(texels, columns, rows, repeat, u, after, ahead)
+        fetch_wave(texels, columns, rows, repeat, u, before, behind)
         for lane in range(LANES):
-            g_v[lane] = _slope(ahead[lane], fetch(texels, columns, rows, repeat, u[lane], v[lane] - step_v), rows)
+            g_v[lane] = _slope(ahead[lane], behind[lane], rows)
         store(g_u, slope[0], first)
         store(g_v, slope[1], first)
 
@@ -84,17 +90,14 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
     bx, by, bz = frame[1, 0], frame[1, 1], frame[1, 2]
     nx, ny, nz = frame[2, 0], frame[2, 1], frame[2, 2]
     u, v, x, y, z = lanes(), lanes(), lanes(), lanes(), lanes()
-    r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
     for first in range(0, count, LANES):
         if nothing_kept(hits, first):
             continue
         load(hits.u, first, u)
         load(hits.v, first, v)
+        fetch_color_wave(texels, columns, rows, repeat, u, v, x, y, z)
         for lane in range(LANES):
-            i00, i10, i01, i11, fx, fy = footprint(u[lane], v[lane], columns, rows, repeat)
-            m0 = 2.0 * mix_channel(texels, r, i00, i10, i01, i11, fx, fy) - 1.0
-            m1 = 2.0 * mix_channel(texels, g, i00, i10, i01, i11, fx, fy) - 1.0
-            m2 = 2.0 * mix_channel(texels, b, i00, i10, i01, i11, fx, fy) - 1.0
+            m0, m1, m2 = 2.0 * x[lane] - 1.0, 2.0 * y[lane] - 1.0, 2.0 * z[lane] - 1.0
             zero = (m0 == 0.0) & (m1 == 0.0) & (m2 == 0.0)
             along, across, up = unit(
                 m0 * tx + m1 * bx + m2 * nx, m0 * ty + m1 * by + m2 * ny, m0 * tz + m1 * bz + m2 * nz
@@ -109,17 +112,12 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
 def albedos(repeat, hits, count, texels, columns, rows, albedo):
     """The colour map at the hits."""
     u, v, red, green, blue = lanes(), lanes(), lanes(), lanes(), lanes()
-    r, g, b = np.uint32(0), np.uint32(1), np.uint32(2)
     for first in range(0, count, LANES):
         if nothing_kept(hits, first):
             continue
         load(hits.u, first, u)
         load(hits.v, first, v)
-        for lane in range(LANES):
-            i00, i10, i01, i11, fx, fy = footprint(u[lane], v[lane], columns, rows, repeat)
-            red[lane] = mix_channel(texels, r, i00, i10, i01, i11, fx, fy)
-            green[lane] = mix_channel(texels, g, i00, i10, i01, i11, fx, fy)
-            blue[lane] = mix_channel(texels, b, i00, i10, i01, i11, fx, fy)
+        fetch_color_wave(texels, columns, rows, repeat, u, v, red, green, blue)
         store(red, albedo[0], first)
         store(green, albedo[1], first)
         store(blue, albedo[2], first)

@@ -10,28 +10,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.cases import Case, build, names
+from ibr_ref.oracle.declaration import Declaration
 from ibr_ref.oracle.examination import Examination, examine
-from ibr_ref.oracle.files import Submission, stale
+from ibr_ref.oracle.files import Submission, empty, stale
 from ibr_ref.oracle.findings import Outcome
 
 
-def check(case: Case, submission: Submission, *, profile: str | None = None, name_causes: bool = True) -> Examination:
+def check(
+    case: Case, submission: Submission, *, profile: str | Declaration | None = None, name_causes: bool = True
+) -> Examination:
     """Judge a submission by the device that is given, or declared by the port, or the tightest that explains it.
 
-    A wrong image that is the image of another built-in case of the method makes the verdict INCONCLUSIVE: the port did not
-    draw this one. Raises ValueError for an unknown device.
+    A wrong submission of which nothing was drawn, or whose image is that of another built-in case of the method, makes the
+    verdict INCONCLUSIVE: the port did not draw this one. Raises ValueError for an unknown device.
     """
     problems = [str(problem) for problem in submission.problems]
+    missing = [] if problems else empty(case, submission.handed, submission.files)
     examination = examine(
-        case, submission.handed, profile=profile or submission.declaration, problems=problems, name_causes=name_causes
+        case,
+        submission.handed,
+        profile=submission.declaration if profile is None else profile,
+        problems=problems,
+        name_causes=name_causes and not missing,
     )
-    image = examination.judgement("image")
-    if image is None or not image.wrong.any():
+    if examination.verdict.outcome is not Outcome.FAIL:
         return examination
-    other = stale(case, submission.handed, _others(case))
-    if other is None:
+    if not missing and (image := examination.judgement("image")) is not None and image.wrong.any():
+        missing = [other for other in [stale(case, submission.handed, _others(case))] if other is not None]
+    if not missing:
         return examination
-    verdict = examination.verdict.model_copy(update={"outcome": Outcome.INCONCLUSIVE, "reasons": (str(other),)})
+    reasons = tuple(map(str, missing))
+    verdict = examination.verdict.model_copy(update={"outcome": Outcome.INCONCLUSIVE, "reasons": reasons})
     return replace(examination, verdict=verdict)
 
 

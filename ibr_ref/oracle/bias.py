@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,10 +41,6 @@ class _Derivative(NamedTuple):
     """(H, W, 3)."""
     smooth: Bools
     """(H, W) where it is one: where a decision turns, the picture jumps."""
-
-
-_KEPT: WeakKeyDictionary[Case, dict[str, _Derivative]] = WeakKeyDictionary()
-"""By parameter: they follow from the case alone, and are two pictures each. Cases do not change."""
 
 
 def biases(case: Case, handed: Handed, image: Judgement, device: Device, *, wrong: bool) -> tuple[Bias, ...]:
@@ -102,7 +97,8 @@ def _excess(bias: Bias) -> float:
 
 
 def _derivative(case: Case, parameter: Parameter) -> _Derivative:
-    known = _KEPT.setdefault(case, {})
+    """Made once a parameter: it follows from the case alone, and is two pictures."""
+    known: dict[str, _Derivative] = case.kept.setdefault("bias", {})
     if parameter.name in known:
         return known[parameter.name]
     found = _quotient(parameter, case.frame.color)

@@ -16,7 +16,7 @@ from ibr_ref.scene import checks
 ALL = "all"
 """Every built-in case."""
 PROBE = "probe"
-"""The case from which devices are measured; it is none of all."""
+"""What the names of the cases begin with from which devices are measured; they are none of all."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ class Choice:
 def chosen(words: Iterable[str]) -> list[Choice]:
     """What the words choose, in their order, each once.
 
-    A word is `all`, a built-in case's name or a pattern of some ("displacement-*"), or a folder: a case's, or one with cases
-    in it. Raises ValueError for a word that chooses nothing.
+    A word is `all`, `probe`, a built-in case's name or a pattern of some ("displacement-*"), or a folder: a case's, or one
+    with cases in it. Raises ValueError for a word that chooses nothing.
     """
     found: dict[tuple[str, Path | None], Choice] = {}
     for word in words:
@@ -47,10 +47,10 @@ def chosen(words: Iterable[str]) -> list[Choice]:
 
 
 def is_many(word: str) -> bool:
-    """Whether a word may stand for several cases: `all`, a pattern, or a folder that is no case itself."""
+    """Whether a word may stand for several cases: `all`, `probe`, a pattern, or a folder that is no case itself."""
     if os.path.isdir(word):
         return not holds_case(Path(word))
-    return word == ALL or any(sign in word for sign in "*?[")
+    return word in (ALL, PROBE) or any(sign in word for sign in "*?[")
 
 
 def holds_case(folder: Path) -> bool:
@@ -68,10 +68,11 @@ def _chosen(word: str) -> Sequence[Choice]:
         folder = Path(word)
         found = [folder] if holds_case(folder) else [each for each in inside(folder) if holds_case(each)]
         return [_own(each) for each in found]
-    if word == PROBE:
-        from ibr_ref.oracle.probe import probe_case
+    if word.startswith(PROBE):
+        from ibr_ref.oracle.probe import PROBES
 
-        return [Choice(PROBE, None, probe_case)]
+        rooms = {name: room.open() for name, room in PROBES.items() if word == PROBE or fnmatchcase(name, word)}
+        return [Choice(name, None, room.probe_case) for name, room in rooms.items()]
     return [
         Choice(name, None, partial(cases.build, name))
         for name in cases.names()

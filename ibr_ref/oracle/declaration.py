@@ -72,6 +72,12 @@ NUMBERS: dict[str, Number] = {
         "whether triangles may be cut at the picture's borders: none where a guard band is known to keep them whole",
         lambda device, cut: {"clip_border": cut == "allowed"},
     ),
+    "setup": Number(
+        ("clipped", "whole"),
+        "corners that planes are made of where the near or the far plane cuts: those of the clipped polygon, or the "
+        "triangle's own, behind the eye too, as in SwiftShader",
+        lambda device, over: {"whole": over == "whole"},
+    ),
     "depth_format": Number(
         tuple(DEPTH_STEPS),
         "the depth buffer's",

@@ -56,6 +56,8 @@ class Device:
     """Clip z may run from -w to w, by a projection matrix of its own, and window depth be (z / w + 1) / 2."""
     clip_border: bool
     """Triangles may be cut at the picture's borders, -w <= x, y <= w, and varyings be set up over any pieces."""
+    whole: bool
+    """Triangles that the near or the far plane cuts may be set up from their own corners, behind the eye too."""
     depth_step: float
     """Steps of the depth buffer. 0: float32."""
     byte: float
@@ -98,6 +100,9 @@ _VULKAN = 'Vulkan 1.3, appendix "Precision and Operation of SPIR-V Instructions"
 _WGSL = "WGSL, section 15.7.4 (accuracy of concrete floating point expressions)"
 _D3D = "Direct3D 11.3 functional specification"
 _CENTRE = "the unsnapped centre lies up to half a step from the snapped one"
+_HOMOGENEOUS = (
+    "homogeneous rasterizers clip nothing (Olano and Greer 1997), and SwiftShader, which is conformant, does it"
+)
 
 IEEE32 = _device(
     "ieee32",
@@ -116,6 +121,7 @@ IEEE32 = _device(
     splat_border=(0.0, "the conventions of this reference: only the centre is snapped, the width is not"),
     minus_one=(False, "the conventions of this reference: 0 <= z <= w"),
     clip_border=(False, "the conventions of this reference: x and y are cut far beyond the picture"),
+    whole=(False, "the conventions of this reference: planes are those of the clipped polygon"),
     depth_step=(0.0, "IEEE 754-2019: a float32 depth buffer"),
     byte=(0.5, "the conventions of this reference: floor(255 c + 0.5)"),
 )
@@ -137,6 +143,7 @@ D3D11 = _device(
     splat_border=(1.1 * 2.0**-8, f"{_D3D}, 3.2.4.1: a quad's corners within 0.6 steps; {_CENTRE}"),
     minus_one=(False, f"{_D3D}, clipping: 0 <= z <= w"),
     clip_border=(False, f"{_D3D}, rasterizer: a guard band around the viewport"),
+    whole=(False, f"{_D3D}, clipping: attributes of new vertices are interpolated before the triangle is set up"),
     depth_step=(2.0**-24, f"{_D3D}, formats: D24_UNORM_S8_UINT"),
     byte=(0.6, f"{_D3D}, conversion of floats to UNORM: within 0.6 ULP"),
 )
@@ -160,6 +167,7 @@ VULKAN = _device(
     ),
     minus_one=(False, "Vulkan 1.3, Primitive Clipping: 0 <= z <= w"),
     clip_border=(True, "Vulkan 1.3, Primitive Clipping: the view volume, -w <= x, y <= w"),
+    whole=(True, f"Vulkan 1.3, Polygons: gives no precision of what is interpolated after clipping; {_HOMOGENEOUS}"),
     depth_step=(2.0**-24, "Vulkan 1.3, Formats: VK_FORMAT_D24_UNORM_S8_UINT, X8_D24"),
     byte=(1.0, "Vulkan 1.3, Fixed-Point Data Conversions: they may give either neighbour (the nearest is preferred)"),
 )
@@ -183,6 +191,7 @@ WEBGPU = _device(
     splat_border=(1.5 * 2.0**-8, f"WebGPU, Rasterization: a quad's corners as any positions; {_CENTRE}"),
     minus_one=(False, "WebGPU, Coordinate Systems: 0 <= z <= w"),
     clip_border=(True, "WebGPU, Primitive Clipping: the clip volume, -w <= x, y <= w"),
+    whole=(True, f"WebGPU leaves it to the API below; {_HOMOGENEOUS}"),
     depth_step=(2.0**-24, "WebGPU, Texture Format Capabilities: depth24plus may have 24 bits unorm"),
     byte=(1.0, "WebGPU leaves conversion to the API below: either neighbour"),
 )
@@ -209,6 +218,10 @@ GL = _device(
     ),
     minus_one=(True, "OpenGL 4.6, Primitive Clipping: -w <= z <= w, the initial clip control"),
     clip_border=(True, "OpenGL 4.6, Primitive Clipping: the view volume, -w <= x, y <= w"),
+    whole=(
+        True,
+        f"OpenGL 4.6, Basic Polygon Rasterization: no precision of what is interpolated after clipping; {_HOMOGENEOUS}",
+    ),
     depth_step=(2.0**-24, "OpenGL 4.6, Coordinate Transformations: window depth may be fixed point; DEPTH_COMPONENT24"),
     byte=(1.0, "OpenGL 4.6, Conversion from Floating-Point to Normalized Fixed-Point: either neighbour"),
 )

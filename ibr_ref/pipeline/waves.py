@@ -21,7 +21,18 @@ from numba.np.arrayobj import make_array, populate_array
 
 from ibr_ref.jit import LANES, config, device
 
-__all__ = ["index_lanes", "lanes", "largest", "load", "load_indices", "smallest", "store", "store_indices"]
+__all__ = [
+    "gather",
+    "gather_triples",
+    "index_lanes",
+    "lanes",
+    "largest",
+    "load",
+    "load_indices",
+    "smallest",
+    "store",
+    "store_indices",
+]
 
 _PLAIN = bool(config.DISABLE_JIT or config.BOUNDSCHECK)
 
@@ -86,6 +97,19 @@ def _store(wave, array, first):
 def _store_indices(wave, array, first):
     for lane in range(LANES):
         array[first + lane] = np.int32(wave[lane])
+
+
+@device
+def _gather(texels, indices, wave):
+    for lane in range(LANES):
+        wave[lane] = texels[indices[lane]]
+
+
+@device
+def _gather_triples(texels, indices, first, second, third):
+    for lane in range(LANES):
+        at = 3 * np.int64(indices[lane])
+        first[lane], second[lane], third[lane] = texels[at], texels[at + 1], texels[at + 2]
 
 
 @device
@@ -168,6 +192,32 @@ def _store_index_vector(typing: Any, wave: Any, array: Any, first: Any) -> Any:
     return types.void(wave, array, types.intp), emit
 
 
+def _emit_gather(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    """Lane by lane, as many channels as there are waves: loads and stores that no pass makes vectors of."""
+    texels, indices, *waves = (
+        make_array(array_type)(context, builder, argument).data
+        for array_type, argument in zip(signature.args, arguments, strict=True)
+    )
+    wide = ir.IntType(64)
+    for lane in range(LANES):
+        index = builder.zext(builder.load(builder.gep(indices, [ir.Constant(wide, lane)])), wide)
+        at = builder.mul(index, ir.Constant(wide, len(waves)))
+        for channel, wave in enumerate(waves):
+            texel = builder.load(builder.gep(texels, [builder.add(at, ir.Constant(wide, channel))]))
+            builder.store(texel, builder.gep(wave, [ir.Constant(wide, lane)]))
+    return context.get_dummy_value()
+
+
+@intrinsic
+def _gather_scalars(typing: Any, texels: Any, indices: Any, wave: Any) -> Any:
+    return types.void(texels, indices, wave), _emit_gather
+
+
+@intrinsic
+def _gather_scalar_triples(typing: Any, texels: Any, indices: Any, first: Any, second: Any, third: Any) -> Any:
+    return types.void(texels, indices, first, second, third), _emit_gather
+
+
 def _folded(context: Any, builder: Any, array_type: Any, array: Any, comparison: str) -> Any:
     """The one lane that is left after each comparison of the lower half of the lanes with the upper one."""
     source, _ = _vector(context, builder, array_type, array)
@@ -211,6 +261,12 @@ store = _store if _PLAIN else _store_vector
 
 store_indices = _store_indices if _PLAIN else _store_index_vector
 """store_indices(wave, array, first): the same for indices that the wave holds as floats."""
+
+gather = _gather if _PLAIN else _gather_scalars
+"""gather(texels, indices, wave): read the elements that the lanes of `indices` (int32, none negative) name."""
+
+gather_triples = _gather_triples if _PLAIN else _gather_scalar_triples
+"""gather_triples(texels, indices, first, second, third): the same, three that lie side by side, from 3 index on."""
 
 smallest = _smallest if _PLAIN else _smallest_of_vector
 """smallest(wave): the smallest of its lanes."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,8 @@ class Drawer:
     draw: Callable[[Path], Frame]
     """The frame of a case's folder, with all stages. Raises ValueError for what is not ported."""
 
+    faults: Mapping[str, str] = field(default_factory=dict)
+    """Of the driver, as the port sees them: names in `oracle.probe.DRIVER_FAULTS`, and what shows them."""
     close: Callable[[], None] = lambda: None
     """Gives the device back."""
 
@@ -105,7 +107,9 @@ def _wgsl(adapter: str | None) -> Drawer:
     except (ImportError, OSError) as error:
         raise ValueError(f"no WebGPU (pip install 'ibr_ref[webgpu]'): {error}") from None
     device = gpu.create_device(adapter)
-    return Drawer("wgsl", device.words, {"profile": "webgpu"}, _of_given("wgsl", device))
+    left = gpu.remainder(device, -7, 3)
+    faults = {} if left == -1 else {"remainder of unsigned numbers": f"-7 % 3 is {left}, and should be -1"}
+    return Drawer("wgsl", device.words, {"profile": "webgpu"}, _of_given("wgsl", device), faults)
 
 
 def _webgl(adapter: str | None) -> Drawer:
@@ -113,7 +117,7 @@ def _webgl(adapter: str | None) -> Drawer:
     from ibr_ref.ports.webgl.browser import Browser
 
     browser = Browser(adapter)
-    return Drawer("webgl", browser.words, _opengl(browser.subpixel_bits), browser.draw, browser.close)
+    return Drawer("webgl", browser.words, _opengl(browser.subpixel_bits), browser.draw, close=browser.close)
 
 
 def _plain(adapter: str | None) -> Drawer:

@@ -12,6 +12,7 @@ from hypothesis import assume
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
+from ibr_ref import methods
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.splatting import case as splatting_case
 from ibr_ref.scene import Camera, Light, checks
@@ -30,16 +31,22 @@ NEAREST = 1e-4
 """Share of the far plane's distance at which the near plane lies at least: nearer ones need a guard band."""
 
 
-def cases(method: str) -> SearchStrategy[Case]:
-    """Of a method. Raises ValueError for one that has none."""
+def cases(method: str, system: str | None = None) -> SearchStrategy[Case]:
+    """Of a method. Raises ValueError for one that has none.
+
+    system: the one of those that its referee judges that draws them all: a search of displacement mapping ("relief"), a
+    shape of splats, how shadows are made. Without: the protruded search; any shape; warped and rendered shadows.
+    """
     checks.choice("method", method, tuple(_CASES))
-    return _CASES[method]()
+    if system is not None:
+        checks.choice("system", system, methods.named(method).judged[1])
+    return _CASES[method](system)
 
 
 @st.composite
-def displacement_cases(draw: DrawFn) -> Case:
-    """Protruded displacement mapping, by all its parameters."""
-    found = draw(displacement.small(PIXELS, TEXELS))
+def displacement_cases(draw: DrawFn, search: str | None = None) -> Case:
+    """Displacement mapping, by all parameters of a search."""
+    found = draw(displacement.small(PIXELS, TEXELS, search or "protruded"))
     _assume_room(found.scene.camera)
     light = _with_a_power(found.scene.light)
     return Case(
@@ -52,23 +59,23 @@ def displacement_cases(draw: DrawFn) -> Case:
 
 
 @st.composite
-def splatting_cases(draw: DrawFn) -> Case:
+def splatting_cases(draw: DrawFn, shape: str | None = None) -> Case:
     """Splatting of one to three depth images, by all its parameters."""
     found = draw(splatting.drawn())
+    params = found.params if shape is None else replace(found.params, shape=shape)
     light = None if found.scene.light is None else _with_a_power(found.scene.light)
-    return splatting_case("drawn", "own", ABOUT, PROFILE, replace(found.scene, light=light), found.params)
+    return splatting_case("drawn", "own", ABOUT, PROFILE, replace(found.scene, light=light), params)
 
 
 @st.composite
-def shadow_cases(draw: DrawFn) -> Case:
+def shadow_cases(draw: DrawFn, method: str | None = None) -> Case:
     """Shadows by warped maps and by rendered ones."""
     found = draw(shadows.drawn(PIXELS))
     usual = Params()
     params = replace(  # no case has a grid
         found.params, grid_size=usual.grid_size, grid_mix=usual.grid_mix, grid_storage=usual.grid_storage
     )
-    if params.method == "grid":
-        params = replace(params, method="warp")
+    params = replace(params, method=method or ("direct" if params.method == "direct" else "warp"))
     _assume_room(found.scene.camera)
     maps = {"maps": prepare(found.scene, params, controls=found.controls)} if params.method == "warp" else {}
     return Case(name="shadows-drawn", about=ABOUT, profile=PROFILE, scene=found.scene, params=params, inputs=maps)

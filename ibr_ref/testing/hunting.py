@@ -33,6 +33,8 @@ class Found:
     """Named as the bug."""
     after: int
     """Cases that were tried before the first that showed it."""
+    seconds: float
+    """That had passed then, by the hunt's clock."""
     seed: int
     """Of the round that found it."""
 
@@ -47,6 +49,8 @@ class Hunt:
 
     port: Port
     methods: tuple[str, ...]
+    system: str | None = None
+    """The only one that it draws, of those of its one method: `cases`."""
     device: str | None = None
     """The profile that the port declares."""
     seed: int = 0
@@ -59,11 +63,18 @@ class Hunt:
     """Cases."""
     told: Callable[[Hunt], None] = lambda hunt: None
     """Called after every case."""
+    shrinking: float = SHRINKING
+    """Seconds for making one failure smaller, at the most."""
+    clock: Callable[[], float] = time.monotonic
+    """Seconds; of the processor alone where others have it too: `time.process_time`."""
+    started: float = 0.0
+    """By the clock."""
 
     def run(self, seconds: float) -> Iterable[Found]:
-        """Until the time is up, each bug when it has been made small, which may take `SHRINKING` longer."""
-        until = time.monotonic() + seconds
-        while time.monotonic() < until:
+        """Until the time is up, each bug when it has been made small, which may take `shrinking` longer."""
+        self.started = self.clock()
+        until = self.started + seconds
+        while self.clock() < until:
             method = self.methods[self.rounds % len(self.methods)]
             found = _Round(self, method, until).run()
             self.rounds += 1
@@ -86,7 +97,7 @@ class _Round:
     def __init__(self, hunt: Hunt, method: str, until: float) -> None:
         self.hunt, self.method, self.until = hunt, method, until
         self.number = hunt.seed + hunt.rounds
-        self.before = hunt.tried
+        self.before, self.seconds = hunt.tried, 0.0
         self.bug: Bug | None = None
         self.smallest: _Shown | None = None
 
@@ -98,7 +109,7 @@ class _Round:
         if self.bug is None or self.smallest is None:
             return None
         bug = with_causes(self.smallest.case, self.smallest.failure)
-        return Found(bug, self.smallest.case, self.before - started, self.number)
+        return Found(bug, self.smallest.case, self.before - started, self.seconds, self.number)
 
     def _test(self) -> Callable[[], None]:
         database = self.hunt.database
@@ -110,10 +121,11 @@ class _Round:
             suppress_health_check=list(HealthCheck),
             report_multiple_bugs=False,
         )
-        return chosen(seed(self.number)(given(cases(self.method))(self._try)))  # seed alone would drop the database
+        drawn = given(cases(self.method, self.hunt.system))
+        return chosen(seed(self.number)(drawn(self._try)))  # seed alone would drop the database
 
     def _try(self, case: Case) -> None:
-        if time.monotonic() > self.until and self.hunt.tried:  # the first case may have to wait for kernels
+        if self.hunt.clock() > self.until and self.hunt.tried:  # the first case may have to wait for kernels
             raise _TimeIsUp
         failure = failure_of(case, self.hunt.port, self.hunt.device, self.hunt.known)
         self.hunt.tried += 1
@@ -122,8 +134,9 @@ class _Round:
             return
         bug = failure.bug
         if self.bug is None:
-            self.bug, self.before = bug, self.hunt.tried
-            self.until = time.monotonic() + SHRINKING
+            now = self.hunt.clock()
+            self.bug, self.before, self.seconds = bug, self.hunt.tried, now - self.hunt.started
+            self.until = now + self.hunt.shrinking
         if self.smallest is None or size_of(case) <= size_of(self.smallest.case):
             self.smallest = _Shown(case, failure)
         raise WrongError(bug.name)

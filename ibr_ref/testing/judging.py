@@ -13,6 +13,7 @@ from ibr_ref.oracle.declaration import Declaration, declared
 from ibr_ref.oracle.device import LOOSEST, Device
 from ibr_ref.oracle.files import Submission, submission_from_arrays
 from ibr_ref.oracle.judgement import Explains, Handed, Judgement, Recognizes
+from ibr_ref.oracle.referees.reads import reads_of
 from ibr_ref.oracle.trials import FREEDOMS, judge
 
 Port = Callable[[Case], Submission]
@@ -141,8 +142,19 @@ def _is_known(case: Case, failure: Failure, known: Collection[Bug]) -> bool:
 
 
 def _wrong(case: Case, submission: Submission, declaration: Declaration, to_first_wrong: bool) -> list[Judgement]:
-    found = judge(case, submission.handed, _device(declaration), to_first_wrong=to_first_wrong)
+    judge_of = methods.named(case.method).referee.open()()
+    handed, device = submission.handed, _device(declaration)
+    if _whole(case, handed):
+        found = judge_of.judge_stages(case, device, handed, to_first_wrong=to_first_wrong)
+    else:
+        found = judge(case, handed, device, to_first_wrong=to_first_wrong)
     return [judgement for judgement in found if judgement.wrong.any()]
+
+
+def _whole(case: Case, handed: Handed) -> bool:
+    """Whether every array is there that the picture is made of: where each is right, so is the picture."""
+    expected = {"color", "depth", *case.frame.stages}
+    return expected & {*reads_of(case.method)} <= {*handed}
 
 
 def _device(declaration: Declaration) -> Device:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 from hypothesis import strategies as st
@@ -12,6 +13,7 @@ GOLDEN = 648055
 """Golden ratio of `FINENESS`, odd: its multiples spread evenly however unevenly (small numbers first) Hypothesis draws."""
 
 
+@cache  # Hypothesis takes longer to make a strategy than to draw from it
 def real(low: float, high: float, *special: float) -> SearchStrategy[float]:
     """A number spread evenly over [low, high]; one in three is `special`, if there are such."""
     even = st.integers(0, FINENESS).map(lambda k: low + (high - low) * (k * GOLDEN % FINENESS / FINENESS))

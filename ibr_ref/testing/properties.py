@@ -22,6 +22,7 @@ def assert_port(
     draw: Callable[[Case], Mapping[str, Any]],
     *,
     method: str,
+    system: str | None = None,
     device: str | None = None,
     max_examples: int = 100,
     folder: str | PathLike[str] | None = None,
@@ -29,9 +30,10 @@ def assert_port(
     """Raise AssertionError unless a port is right on random cases of a method; the words are of the smallest that is not.
 
     draw: takes an `oracle.Case` (its scene, params and inputs), returns arrays by the names that the case's folder expects:
-    "color" and "depth", and any stages. device: the profile that it declares; without, the loosest. folder: where the
-    failing case is written, for `ibr-ref check` and for ports that read files; without, a temporary one, which the words
-    name. Everything else is as Hypothesis' profile says. Raises ValueError for an unknown method or device.
+    "color" and "depth", and any stages. system: the only one that it draws, as for `cases`. device: the profile that it
+    declares; without, the loosest. folder: where the failing case is written, for `ibr-ref check` and for ports that read
+    files; without, a temporary one, which the words name. Everything else is as Hypothesis' profile says. Raises ValueError
+    for an unknown method, system or device.
     """
     port = drawing(draw)
     shown: list[tuple[Bug, Case]] = []
@@ -42,7 +44,7 @@ def assert_port(
         phases=[phase for phase in settings().phases if phase is not Phase.explain],  # which takes minutes
         suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
     )
-    @given(cases(method))
+    @given(cases(method, system))
     def holds(case: Case) -> None:
         bug = bug_of(case, port, device)
         if bug is not None:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.scene import Camera, DepthImage, Light
 from ibr_ref.splatting import Params, Scene
-from ibr_ref.testing.numbers import real
+from ibr_ref.testing.numbers import real, seeds
 
 
 @dataclass(frozen=True)
@@ -86,16 +86,19 @@ def depth_images(draw: DrawFn) -> DepthImage:
     middle = draw(real(1.5, 4.0, 3.0))
     jump = middle * 1.05  # the farthest that still is a neighbour
     levels = [middle, middle, jump, np.nextafter(jump, np.inf), 1.2 * middle, 0.98 * middle]
-    depth = draw(st.lists(st.sampled_from(levels), min_size=width * height, max_size=width * height))
-    color = draw(st.lists(real(0.0, 1.0, 0.0, 1.0), min_size=width * height, max_size=width * height))
-    holes = draw(st.lists(st.booleans(), min_size=width * height, max_size=width * height))
-    mask = draw(st.sampled_from([None, None, None, holes, holes, holes, [False] * len(holes)]))
-    grey = np.reshape(color, (height, width, 1))
+    flat = draw(st.booleans())
+    random = np.random.RandomState(draw(seeds()))
+    mask = {
+        "none": None,
+        "holes": random.random_sample((height, width)) < 0.5,
+        "nothing": np.zeros((height, width), np.bool_),
+    }[draw(st.sampled_from(["none", "none", "none", "holes", "holes", "holes", "nothing"]))]
+    grey = np.clip(random.uniform(-0.25, 1.25, (height, width, 1)), 0.0, 1.0)  # often black, and white
     return DepthImage(
         color=grey * np.array([1.0, 0.5, 0.25]) + np.array([0.0, 0.25, 0.0]),
-        depth=np.reshape(depth, (height, width)),
+        depth=np.full((height, width), middle) if flat else random.choice(levels, (height, width)),
         camera=camera,
-        mask=None if mask is None else np.reshape(mask, (height, width)),
+        mask=mask,
     )
 
 

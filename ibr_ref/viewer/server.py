@@ -58,6 +58,7 @@ class Server(ThreadingHTTPServer):
             super().__init__((LOOPBACK, port), _Handler)
         except (OSError, OverflowError) as error:
             raise OSError(f"port: found {port}, allowed: one that is free on {LOOPBACK} ({error})") from None
+        self.worker.submit(session.warm)  # while the browser opens
 
     @property
     def address(self) -> str:

@@ -7,6 +7,7 @@ import math
 import time
 from collections import OrderedDict
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from inspect import signature
 from typing import Any
@@ -84,6 +85,16 @@ class Session:
         return found
 
     # --- What the page opens with ---
+
+    def warm(self) -> None:
+        """Draw what the page opens with, as it will when the view moves and when it rests: then all kernels are there.
+
+        What cannot be drawn is said when it is asked for.
+        """
+        with suppress(ValueError, MemoryError):
+            self._draw(*self.described({}), stages=False)
+            self._frame({}, stages=True)
+            self.difference({})
 
     def start(self) -> dict[str, Any]:
         """All that the page is made of, as JSON has it."""
@@ -165,7 +176,7 @@ class Session:
 
     def _frame(self, state: Mapping[str, Any], *, stages: bool) -> Frame:
         """Drawn, or kept from before."""
-        key = json.dumps([state.get(part) for part in ("params", "scene", "camera")], sort_keys=True)
+        key = json.dumps([state.get(part) or {} for part in ("params", "scene", "camera")], sort_keys=True)
         frame = self._frames.pop(key, None)
         if frame is None or (stages and not frame.stages):
             scene, params = self.described(state)

@@ -54,17 +54,24 @@ def test_a_conformance_run(run: Run, tmp_path: Path) -> None:
     lines = said.splitlines()
     assert code == 0
     assert lines[0].startswith("plain on NumPy ")
-    assert lines[1:] == [
-        f"PASS          {CASE}  on ieee32",
-        "PASS          splatting-lamp  on ieee32",
-        "2 cases: 2 PASS.",
-    ]
+    assert lines[1].startswith("measured: subpixel_bits 8, varyings snapped, ")
+    assert lines[2].startswith(f"PASS          {CASE}   on ieee32,subpixel_bits=8,")
+    assert lines[3].startswith("PASS          splatting-lamp  on ieee32,subpixel_bits=8,")
+    assert lines[4:] == ["2 cases: 2 PASS."]
     document = json.loads((tmp_path / "out" / "conformance.json").read_text())
     assert document["declares"] == {"profile": "ieee32"}
     assert [(row["case"], row["outcome"]) for row in document["cases"]] == [(CASE, "PASS"), ("splatting-lamp", "PASS")]
     page = (tmp_path / "out" / "index.html").read_text()
-    assert "<h1>2 of 2 cases pass</h1>" in page
-    assert page.count('class="PASS"') == 2
+    assert "2 cases: 2 PASS" in page
+    assert page.count('<tr class="pass">') == 2
+    assert "8, measured (" in page
+    assert "None of those that are known." in page
+    assert (document["measured"]["varyings"], document["faults"], document["unmeasured"]) == ("snapped", {}, {})
+    numbers = tmp_path / "out" / "conformance.json"
+    code, said, _ = run("conformance", "--compare", numbers, numbers, "--out", tmp_path / "both")
+    assert (code, said) == (0, "2 cases: 0 with another verdict.\n")
+    assert "0 of 2 cases have another verdict" in (tmp_path / "both" / "compared.html").read_text()
+    assert_one_line(run("conformance", "--compare", numbers, tmp_path / "out" / "index.html"), "found no run")
 
 
 def test_a_case_that_fails_has_a_report(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,19 +86,19 @@ def test_a_case_that_fails_has_a_report(run: Run, tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(drawing, "_plainly", brighter)
     code, said, _ = run("conformance", CASE, "--with", "plain", "--out", tmp_path / "out")
     assert code == 1
-    assert said.splitlines()[1].startswith(f"FAIL          {CASE}  ")
+    assert said.splitlines()[2].startswith(f"FAIL          {CASE}  ")
     assert f'<a href="{CASE}.html">' in (tmp_path / "out" / "index.html").read_text()
     assert (tmp_path / "out" / f"{CASE}.html").is_file()
 
 
 def test_a_device_is_measured_and_taken(run: Run, tmp_path: Path) -> None:
     """From the probe's export to `check --device`."""
-    assert run("export", "probe", tmp_path / "probe")[0] == 0
-    assert run("draw", tmp_path / "probe", tmp_path / "drawn", "--with", "plain")[0] == 0
-    code, said, _ = run("probe", tmp_path / "probe", tmp_path / "drawn", "--out", tmp_path / "device.json")
+    assert run("export", "probe", tmp_path / "probes")[0] == 0
+    assert run("draw", tmp_path / "probes", tmp_path / "drawn", "--with", "plain")[0] == 0
+    code, said, _ = run("probe", tmp_path / "probes", tmp_path / "drawn", "--out", tmp_path / "device.json")
     assert code == 0
     assert said.splitlines()[0].startswith("subpixel_bits: 8, measured (")
-    assert said.splitlines()[-1] == "clip_z, clip_border, unorm_rounding: assumed, as ieee32 grants them"
+    assert said.splitlines()[-1] == "clip_z, clip_border, setup, unorm_rounding: assumed, as ieee32 grants them"
     document = json.loads((tmp_path / "device.json").read_text())
     assert document == {
         "profile": "ieee32",

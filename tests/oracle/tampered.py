@@ -10,8 +10,7 @@ import numpy as np
 
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
-from ibr_ref.oracle.faults import displacement, splatting
-from ibr_ref.oracle.ports import shadows
+from ibr_ref.oracle.faults import displacement, shadows, splatting
 
 Arrays = dict[str, Any]
 Change = Callable[[Any], Any]
@@ -73,19 +72,18 @@ class _Shadows(_Change, shadows.Port):
     def controls(self) -> Any:
         return self._changed("controls", super().controls())
 
-    def find(self, at: Any) -> Any:
-        cell, fraction = super().find(at)
+    def find(self, lines: Any, at: Any) -> Any:
+        cell, fraction = super().find(lines, at)
         if self.name == "warp.cell":
             cell = self._changed("warp.cell", cell)
-            lines = self.lines()
-            fraction = np.array([self.fraction_in(at[k], lines[k][cell[k] : cell[k] + 2]) for k in range(2)])
+            fraction = np.array([self.fraction_in(at[k], lines[k], cell[k]) for k in range(2)])
         return cell, self._changed("warp.fraction", fraction)
 
-    def caster_depths(self) -> Any:
-        return self._changed("maps.depths", super().caster_depths())
+    def caster_depths(self, lines: Any) -> Any:
+        return self._changed("maps.depths", super().caster_depths(lines))
 
-    def shares(self, cell: Any, fraction: Any) -> Any:
-        return self._changed("warp.shares", super().shares(cell, fraction))
+    def shares(self, cell: Any, fraction: Any, depths: Any) -> Any:
+        return list(self._changed("warp.shares", np.stack(super().shares(cell, fraction, depths))))
 
     def row_grid(self, first: Any, second: Any, share: Any) -> Any:
         return self._changed("warp.row_grids", super().row_grid(first, second, share))

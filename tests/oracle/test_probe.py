@@ -12,7 +12,7 @@ import pytest
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.declaration import NUMBERS, Declaration
-from ibr_ref.oracle.probe import NEEDED, measure, probe_case
+from ibr_ref.oracle.probe.polygons import NEEDED, measure, probe_case
 from ibr_ref.oracle.programs.displacement.port import Port
 
 

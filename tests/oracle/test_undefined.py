@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 from ibr_ref.array_types import Floats
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.cases import Case, build, names
-from ibr_ref.oracle.faults import displacement, splatting
-from ibr_ref.oracle.ports import shadows
+from ibr_ref.oracle.faults import displacement, shadows, splatting
 from ibr_ref.oracle.undefined import UNDEFINED
 from ibr_ref.scene import Light
 
@@ -107,10 +106,8 @@ def met(case: Case) -> dict[str, int]:
         port = _Displacement(case.scene, case.params, policy, case.inputs)
         port.do = watched = Watched(policy)
     else:
-        port = type("WatchedShadows", (shadows.Port,), {"arithmetic": Watched})(
-            case.scene, case.params, policy, case.inputs
-        )
-        watched = port.ops
+        watched = Watched(policy)
+        port = shadows.Port(case.scene, case.params, policy, case.inputs).on(watched)
     with np.errstate(all="ignore"):
         port.render()
     return dict(watched.met)

@@ -57,6 +57,18 @@ def test_random_devices_are_right_on_them(method: str, one_thread: None) -> None
     settings(QUIET, max_examples=40)(seed(3)(given(cases(method))(right)))()
 
 
+SYSTEMS = [(method.name, system) for method in methods.records() for system in method.judged[1]]
+
+
+@pytest.mark.parametrize(("method", "system"), SYSTEMS)
+def test_of_one_system(method: str, system: str, one_thread: None) -> None:
+    def right(case: Case) -> None:
+        assert case.system == system
+        assert bug_of(case, drawing(plain), "ieee32") is None
+
+    settings(QUIET, max_examples=8)(seed(5)(given(cases(method, system))(right)))()
+
+
 def test_they_shrink_to_a_pixel(one_thread: None) -> None:
     chosen = settings(QUIET, phases=[Phase.generate, Phase.shrink])
     case = find(cases("displacement"), lambda case: bool((case.frame.depth < 1.0).any()), settings=chosen)
@@ -79,3 +91,5 @@ def test_they_can_be_written_down(tmp_path: Any, one_thread: None) -> None:
 def test_a_method_without_any() -> None:
     with pytest.raises(ValueError, match=r"method: found 'rays', allowed: displacement \| splatting \| shadows"):
         cases("rays")
+    with pytest.raises(ValueError, match=r"system: found 'disc', allowed: protruded"):
+        cases("displacement", "disc")

@@ -12,7 +12,7 @@ from ibr_ref import oracle
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.faults.displacement import MUTANTS
-from ibr_ref.testing import Bug, Hunt, PortError, assert_port, bug_of, drawing, hunting
+from ibr_ref.testing import Bug, Hunt, PortError, assert_port, bug_of, drawing, judging
 from ibr_ref.testing.judging import failure_of, with_causes
 from tests.oracle.tiny_cases import TINY, handed_of
 from tests.testing.test_cases import plain
@@ -60,14 +60,9 @@ class Clock:
         return self.now
 
 
-@pytest.fixture(autouse=True)
-def clock(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hunting, "time", Clock())
-    monkeypatch.setattr(hunting, "SHRINKING", 80.0)
-
-
 def hunt(draw: Callable[[Case], dict[str, Any]], **more: Any) -> Hunt:
-    return Hunt(port=drawing(draw), methods=("displacement",), **more)
+    options = {"shrinking": 80.0, "clock": Clock().monotonic, **more}
+    return Hunt(port=drawing(draw), methods=("displacement",), **options)
 
 
 def test_a_bug_is_found_and_made_small() -> None:
@@ -82,9 +77,8 @@ def test_a_bug_is_found_and_made_small() -> None:
     assert not [*hunt(steep, known={STEEP}).run(15)]
 
 
-def test_two_bugs_are_two(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(hunting, "SHRINKING", 5.0)
-    found = [each.bug for each in hunt(steep_and_clip).run(60)]
+def test_two_bugs_are_two() -> None:
+    found = [each.bug for each in hunt(steep_and_clip, shrinking=5.0).run(60)]
     assert sorted(found) == [STEEP, CLIP]
 
 
@@ -112,18 +106,28 @@ def test_bugs_of_one_array_are_told_apart_by_their_causes() -> None:
     assert again.bug.place == bug.place
 
 
+def test_arrays_that_are_all_right_make_a_right_picture() -> None:
+    """The picture is not judged besides, whatever else is handed in; without one of them it is."""
+    case = TINY["displacement-hill"]()
+    arrays = reference(case)
+    assert judging._whole(case, arrays)
+    for name in ("march.hit", "shade.lit", "depth"):
+        assert not judging._whole(case, {key: array for key, array in arrays.items() if key != name})
+    wrong = {**arrays, "color": 0.5 * arrays["color"]}
+    assert bug_of(case, drawing(lambda case: wrong), None) == Bug("displacement", "shade", "color")
+
+
 def test_a_right_port_has_none_and_the_time_is_kept() -> None:
     chase = hunt(reference)
     assert not [*chase.run(20)]
     assert 15 <= chase.tried <= 20
 
 
-def test_it_goes_on_with_what_failed_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_it_goes_on_with_what_failed_before(tmp_path: Path) -> None:
     """The example that was being made smaller is the first that is tried next time."""
-    monkeypatch.setattr(hunting, "SHRINKING", 3.0)
-    (first,) = [*hunt(steep, database=tmp_path).run(30)][:1]
+    (first,) = [*hunt(steep, database=tmp_path, shrinking=3.0).run(30)][:1]
     assert first.bug == STEEP
-    (again,) = [*hunt(steep, database=tmp_path, seed=99).run(30)][:1]
+    (again,) = [*hunt(steep, database=tmp_path, shrinking=3.0, seed=99).run(30)][:1]
     assert again.after == 1
 
 

@@ -155,3 +155,26 @@ def test_what_has_no_page() -> None:
         viewer.view(block().scene, wall().params)
     with pytest.raises(ValueError, match="scene: found 'int'"):
         viewer.view(3)
+
+
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_what_a_page_opens_with_is_drawn_before_it_asks(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The picture, what it is compared with, and the numbers of its pixels; as it will be drawn while the view moves."""
+    opened = Session(SUBJECTS[name]())
+    drawn: list[bool] = []
+    draw = opened._draw
+
+    def counted(scene: Any, params: Any, stages: bool) -> Any:
+        drawn.append(stages)
+        return draw(scene, params, stages)
+
+    monkeypatch.setattr(opened, "_draw", counted)
+    opened.warm()
+    assert {True, False} <= {*drawn}
+    drawn.clear()
+    state = {"params": {}, "scene": {}, "camera": None, "show": "color", "other": "", "seam": 0.7}
+    opened.start()
+    opened.shown(state)
+    opened.numbers(state, 0, 0)
+    opened.difference(state)
+    assert not drawn

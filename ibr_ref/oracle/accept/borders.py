@@ -56,6 +56,33 @@ class Cut:
         """By how much, along each axis, a corner may be elsewhere, in pixels."""
         return float(self.off.max(initial=0.0))
 
+    def pieces(self, corners: tuple[Floats, Floats], px: Floats, py: Floats, device: Device) -> Iterator[Piece]:
+        """Those that may cover points (n,); corners x, y (3,): of a triangle of the polygon."""
+        shares = weights(*corners, self.x, self.y)
+        units = (ROUNDINGS * device.operation + device.quotient) * UNIT
+        crossing = self.crossings * CROSSING * device.operation * UNIT
+        for piece in map(list, combinations(range(len(self.x)), 3)):
+            x, y, off = self.x[piece], self.y[piece], self.off[piece]
+            reach = off + 2.0**-device.subpixel_bits
+            here = np.flatnonzero(_within(x, y, reach, px, py))
+            if not len(here):
+                continue
+            dx, dy = (np.abs(np.roll(a, -2) - np.roll(a, -1)) for a in (x, y))
+            area = abs((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]))
+            room = float(area - reach @ (dx + dy) - 2.0 * reach.sum() ** 2)
+            # From the picture's corner to the anchor, and from there to the pixel; rows may be counted from below.
+            across = px[here] + x.max()
+            down = np.maximum(py[here] + y.max(), 2.0 * self.size[1] - py[here] - y.min())
+            terms = np.multiply.outer(across, dy) + np.multiply.outer(down, dx)
+            beyond = float(reach.max() * (dx + dy).sum())
+            yield Piece(
+                points=here,
+                rounding=units * terms / room if room > 0.0 else np.full(terms.shape, np.inf),
+                shares=shares[piece],
+                crossing=crossing,
+                moved=float(reach.max() + 2.0 * off.max() * (beyond / room if room > 0.0 else np.inf)),
+            )
+
 
 def cut(clip: Floats, error: Floats, size: tuple[int, int], device: Device) -> Cut | None:
     """Cut a polygon, corners (m, 4) in clip space with their errors; None: it lies within the picture, or beside it."""
@@ -106,17 +133,22 @@ class Piece:
     """(n, 3) of its corners' weights; infinite where it may have no area."""
     shares: Floats
     """(3, 3) of the corners of the whole triangle at its own."""
-    crossing: float
+    moved: float | Floats
+    """How far, along each axis, the point that a device's weights belong to may lie from the pixel's centre; or (n,)."""
+    crossing: float = 0.0
     """Roundings of its corners' values, relative to the terms of their sums."""
-    moved: float
-    """How far, along each axis, the point that a device's weights belong to may lie from the pixel's centre."""
+    own: Floats | None = None
+    """(n, 3) what its corners' values are off by, relative to them, each by the share that it has at the points."""
+    anchors: tuple[int, ...] = (0, 1, 2)
+    """The corners at which a plane may be anchored."""
 
     def off(self, corner: Floats) -> Floats:
         """(n, ...) of an affine function by its values (3, ...) at the corners of the whole triangle, by a plane."""
         f = np.tensordot(self.shares, corner, 1)
-        anchored = [_sum(self.rounding, np.abs(f - f[a])) for a in range(3)]
+        anchored = [_sum(self.rounding, np.abs(f - f[a])) for a in self.anchors]
         terms = np.tensordot(np.abs(self.shares), np.abs(corner), 1).max(axis=0)
-        return np.asarray(np.maximum.reduce(anchored) + self.crossing * terms)
+        off = np.maximum.reduce(anchored) + self.crossing * terms
+        return np.asarray(off if self.own is None else off + _sum(self.own, np.abs(f)))
 
 
 def _sum(rounding: Floats, apart: Floats) -> Floats:
@@ -126,35 +158,7 @@ def _sum(rounding: Floats, apart: Floats) -> Floats:
     return np.asarray(np.where(apart > 0.0, each, 0.0).sum(axis=1))
 
 
-def pieces(cut: Cut, corners: tuple[Floats, Floats], px: Floats, py: Floats, device: Device) -> Iterator[Piece]:
-    """Those that may cover points (n,); corners x, y (3,): of a triangle of the polygon."""
-    shares = _weights(*corners, cut.x, cut.y)
-    units = (ROUNDINGS * device.operation + device.quotient) * UNIT
-    crossing = cut.crossings * CROSSING * device.operation * UNIT
-    for piece in map(list, combinations(range(len(cut.x)), 3)):
-        x, y, off = cut.x[piece], cut.y[piece], cut.off[piece]
-        reach = off + 2.0**-device.subpixel_bits
-        here = np.flatnonzero(_within(x, y, reach, px, py))
-        if not len(here):
-            continue
-        dx, dy = (np.abs(np.roll(a, -2) - np.roll(a, -1)) for a in (x, y))
-        area = abs((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]))
-        room = float(area - reach @ (dx + dy) - 2.0 * reach.sum() ** 2)
-        # From the picture's corner to the anchor, and from there to the pixel; rows may be counted from below.
-        across = px[here] + x.max()
-        down = np.maximum(py[here] + y.max(), 2.0 * cut.size[1] - py[here] - y.min())
-        terms = np.multiply.outer(across, dy) + np.multiply.outer(down, dx)
-        beyond = float(reach.max() * (dx + dy).sum())
-        yield Piece(
-            points=here,
-            rounding=units * terms / room if room > 0.0 else np.full(terms.shape, np.inf),
-            shares=shares[piece],
-            crossing=crossing,
-            moved=float(reach.max() + 2.0 * off.max() * (beyond / room if room > 0.0 else np.inf)),
-        )
-
-
-def _weights(x: Floats, y: Floats, at_x: Floats, at_y: Floats) -> Floats:
+def weights(x: Floats, y: Floats, at_x: Floats, at_y: Floats) -> Floats:
     """(k, 3) shares of the corners x, y (3,) of a triangle at points (k,); NaN without an area."""
     dx, dy = np.roll(x, -2) - np.roll(x, -1), np.roll(y, -2) - np.roll(y, -1)
     start_x, start_y = np.roll(x, -1), np.roll(y, -1)

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, reduce
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter, minimum_filter
 
 from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded, exact
@@ -25,6 +24,19 @@ FARTHEST = 1e9
 FILTER_ROUNDINGS = 8.0
 """Of a filter in float arithmetic: two nested lerps, each 1 - f, two products and a sum on numbers no larger than the
 largest texel in reach, and one rounding of the texel itself."""
+
+
+def _of_windows(texels: Floats, reach: int, axis: int, extreme: np.ufunc) -> Floats:
+    """The extreme of 2 reach + 1 neighbours along an axis, by windows that grow to twice their width.
+
+    `scipy.ndimage` has filters for it, and takes as long to import as a small case takes to be judged.
+    """
+    windows, width, wanted = np.moveaxis(texels, axis, 0), 1, 2 * reach + 1
+    while width < wanted:
+        step = min(width, wanted - width)
+        windows = extreme(windows[:-step], windows[step:])
+        width += step
+    return np.moveaxis(windows, 0, axis)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +64,9 @@ class Texture:
     def extremes(self, reach: int) -> tuple[Floats, Floats]:
         """The least and the largest texel no farther than `reach` from each texel along both axes, kept for later."""
         if reach not in self._extremes:
-            size = (2 * reach + 1, 2 * reach + 1, 1)[: self.texels.ndim]
-            mode = "wrap" if self.repeat else "nearest"
-            least, most = (f(self.texels, size, mode=mode) for f in (minimum_filter, maximum_filter))
+            mode: Literal["wrap", "edge"] = "wrap" if self.repeat else "edge"
+            around = np.pad(self.texels, [(reach, reach)] * 2 + [(0, 0)] * (self.texels.ndim - 2), mode)
+            least, most = (_of_windows(_of_windows(around, reach, 0, f), reach, 1, f) for f in (np.minimum, np.maximum))
             self._extremes[reach] = (least, most)
         return self._extremes[reach]
 

@@ -18,11 +18,15 @@ from ibr_ref.oracle.arithmetic.choices import Choices
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import TINY, UNIT, Device
 
+TRUNCATED = 2.0
+"""Of an operation that is rounded, or truncated, the error is below one unit in the last place: what is exact stays so."""
+
 
 class Bounds(Choices):
     """Each result carries a rounding, and what it owes to the symbols."""
 
     bounded = True
+    backwards = False
     functions, ufuncs = numpy_names.FUNCTIONS, numpy_names.UFUNCS
 
     def __init__(self, device: Device) -> None:
@@ -84,11 +88,21 @@ class Bounds(Choices):
 
     def add(self, a: Any, b: Any) -> Number:
         """A + b."""
+        if self._stays(a, b):
+            return self.of(a)
         return self.rounded(self.of(a).plus(b), self.device.operation)
 
     def subtract(self, a: Any, b: Any) -> Number:
         """A - b."""
+        if self._stays(a, b):
+            return self.of(a)
         return self.rounded(self.of(a).plus(b, -1.0), self.device.operation)
+
+    def _stays(self, a: Any, b: Any) -> bool:
+        """Whether a sum is its first number, the other being 0: operations that are rounded or truncated leave it so."""
+        a, b = self.of(a), self.of(b)
+        nothing = self.device.operation <= TRUNCATED and not b.value.any() and not b.deviation.any()
+        return bool(nothing and b.lane is None and np.broadcast_shapes(a.shape, b.shape) == a.shape)
 
     def product(self, a: Any, b: Any) -> Number:
         """A b, not rounded."""
@@ -211,6 +225,24 @@ class Bounds(Choices):
     def filtered(self, mixed: Any, texels: Any) -> Any:
         """A lerp of texels in floats: what filters do in bytes is known of the right filter as a whole."""
         return mixed
+
+    def of_bytes(self, x: Any) -> Number:
+        """What a filter makes of texels that are bytes."""
+        x = self.of(x)
+        return Number(self, x.value, x.error + self.device.filter_step, x.slopes, x.lane)
+
+    def blended_byte(self, value: Any) -> Number:
+        """The sum that blending makes, as a frame buffer of bytes holds it.
+
+        Where the device converts to the nearest byte (0.5) the sums are those of the conventions. Elsewhere blending may
+        round source and product too: up to one step away from the unrounded sum (shadows/method.md, "In 8 bits").
+        """
+        x, step = self.of(value), self.device.byte
+        slack, off = 0.5 if step == 0.5 else max(step, 1.0), 2.0 * 255.0 * self.device.operation * UNIT
+        low, high = 255.0 * x.low - off - slack, 255.0 * x.high + off + slack
+        low, high = np.clip(np.ceil(low), 0.0, 255.0), np.clip(np.floor(high), 0.0, 255.0)
+        middle = Number(self, 0.5 * (low + high), 0.5 * (high - low), {}, x.lane)
+        return self.divide(middle, 255.0)
 
     def depth(self, depth: Any) -> Number:
         """A window depth in the depth buffer."""

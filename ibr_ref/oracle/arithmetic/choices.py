@@ -10,7 +10,7 @@ import numpy as np
 
 from ibr_ref.array_types import Ints
 from ibr_ref.oracle.arithmetic.decisions import Decisions
-from ibr_ref.oracle.arithmetic.number import Number, Truth
+from ibr_ref.oracle.arithmetic.number import Number, Truth, may_and_must
 
 
 class Choices(Decisions):
@@ -94,6 +94,14 @@ class Choices(Decisions):
             high = np.where(stays, high, high - 1.0)
             low = np.where(stays, np.maximum(low, high), low)
         return high
+
+    def pick(self, condition: Any, first: Callable[[], Any], other: Callable[[], Any]) -> Any:
+        """One of two, by a condition of the whole case: either where it may go either way, the value's outcome before."""
+        may, must = may_and_must(condition)
+        if may == must:
+            return first() if must else other()
+        likelier, less_so = (first, other) if bool(condition) else (other, first)
+        return self.alternatives(self.of(likelier()), self.of(less_so()))
 
     def either(self, first: Any, *others: Callable[[], Any]) -> Any:
         """A formula's other legal forms beside it; of vectors, of each component."""

@@ -73,6 +73,12 @@ class Arithmetic:
     """Operations as a policy makes them. Arguments are numbers or arrays that broadcast."""
 
     bounded = False
+
+    @property
+    def backwards(self) -> bool:
+        """Whether sums are added from the right."""
+        return self.policy.backwards
+
     minus_one = False
 
     def __init__(self, policy: Policy) -> None:
@@ -125,6 +131,10 @@ class Arithmetic:
         """What a loop carries on."""
         return x
 
+    def pick(self, condition: Any, first: Callable[[], Any], other: Callable[[], Any]) -> Any:
+        """One of two, by a condition of the whole case."""
+        return first() if condition else other()
+
     def in_lanes(self, x: Any, like: Any) -> Any:
         """A number of the whole case for each row of `like`."""
         return np.broadcast_to(x, np.shape(like))
@@ -144,6 +154,10 @@ class Arithmetic:
     def missing(self, x: Any) -> Any:
         """Which are no numbers."""
         return np.isnan(x)
+
+    def of_bytes(self, x: Any) -> Any:
+        """What a filter makes of texels that are bytes: how far that may be off is known of all of it."""
+        return x
 
     def rising(self, f: Callable[[Any], Any], x: Any) -> Any:
         """A function that nowhere falls."""
@@ -309,6 +323,10 @@ class Arithmetic:
             return self.number(depth)
         most = 2.0**self.policy.depth_bits - 1.0
         return np.asarray(np.floor(np.clip(depth, 0.0, 1.0) * most + 0.5) / most, np.float64)
+
+    def blended_byte(self, value: ArrayLike) -> Floats:
+        """The sum that blending makes, as a frame buffer of bytes holds it: floor(255 c + 0.5) / 255, saturated."""
+        return self.divide(np.floor(self.add(self.multiply(np.minimum(value, 1.0), 255.0), 0.5)), 255.0)
 
     def flat_depth(self, depth: ArrayLike) -> Floats:
         """The depth of a primitive that has one, as the depth buffer holds it."""

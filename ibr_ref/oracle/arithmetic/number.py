@@ -130,6 +130,14 @@ class Number(_Speaks):
     def _component(self, c: int) -> Number:
         return self.each(lambda x: x[..., c], self.lane)
 
+    def reshape(self, *shape: Any) -> Number:
+        """Of numbers of the whole case."""
+        return self.each(lambda x: x.reshape(*shape), self.lane)
+
+    def swapaxes(self, first: int, second: int) -> Number:
+        """Of numbers of the whole case."""
+        return self.each(lambda x: x.swapaxes(first, second), self.lane)
+
     def astype(self, dtype: Any) -> Any:
         """Whole numbers are decided; another float type is a rounding that nowhere falls."""
         if np.dtype(dtype).kind == "i":

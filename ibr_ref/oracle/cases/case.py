@@ -35,6 +35,8 @@ class Case:
     inputs: dict[str, Any] = field(default_factory=dict)
     """What else is given, as the method's record names it: "maps" (shadows.Maps), "normals" (of splatting: uint8 (H, W, 3),
     one an image)."""
+    kept: dict[str, Any] = field(default_factory=dict, init=False, repr=False)
+    """What referees made of it and want again, by a name of theirs; it may refer to the case, and goes with it."""
 
     def __post_init__(self) -> None:
         """Raise ValueError for what no referee judges, the systems that the papers compare with, and for a pow(0, 0)."""

@@ -33,6 +33,8 @@ class Variant:
     """Where it also computes in another order; None: the plain port."""
     own: tuple[str, ...] = ()
     """Of what the case hands over, the arrays that it makes itself and goes on with: handed in, beside a picture too."""
+    coarse: bool = False
+    """Its device has fewer bits or more freedom than desktops': mutants are tried on it as well (`coarse.py`)."""
 
 
 @dataclass(frozen=True)

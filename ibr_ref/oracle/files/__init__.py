@@ -1,7 +1,7 @@
 """Cases as folders, and what ports hand in: everything of the oracle that touches a file."""
 
 from ibr_ref.oracle.files.changed import changed_stages, outdated
-from ibr_ref.oracle.files.content import stale
+from ibr_ref.oracle.files.content import empty, stale
 from ibr_ref.oracle.files.load import load_case
 from ibr_ref.oracle.files.problem import Problem
 from ibr_ref.oracle.files.submission import Submission, load_submission, submission_from_arrays
@@ -12,6 +12,7 @@ __all__ = [
     "Submission",
     "changed_stages",
     "check_replaceable",
+    "empty",
     "export",
     "load_case",
     "load_submission",

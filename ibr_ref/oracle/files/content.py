@@ -1,6 +1,8 @@
-"""Whether there is anything to judge: images that nothing was drawn into, that hold no numbers, or that are another case's.
+"""Whether there is anything to judge: images that hold no numbers, that nothing was drawn into, or that are another case's.
 
-Nothing here can clear a port; each finding turns a verdict that would be FAIL into INCONCLUSIVE, with the likelier reason.
+Nothing here can clear a port, and only numbers that are none keep one from being judged. Where nothing was drawn that may be
+right, as where all that is there may legally be clipped: `empty` and `stale` are asked of a wrong submission, and turn FAIL
+into INCONCLUSIVE, with the likelier reason.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ STALE_RATIO = 10.0
 
 
 def content_problems(case: Case, handed: Mapping[str, Any], files: Mapping[str, str]) -> list[Problem]:
-    """Findings about arrays of the right types and shapes; files: where each came from, for the words."""
+    """Why arrays of the right types and shapes cannot be judged; files: where each came from, for the words."""
     if not set(handed) - {"depth"}:
         return [
             Problem("submission", "neither a final image nor a stage", "color.png, color.npy, or any stage's array")
@@ -37,8 +39,12 @@ def content_problems(case: Case, handed: Mapping[str, Any], files: Mapping[str, 
     for name in ("color", "depth"):
         if name in handed:
             problems += _number_problems(files.get(name, name), handed[name])
-    if not problems and "color" in handed:
-        problems += _blank(case, as_bytes(handed["color"]), files.get("color", "color"))
+    return problems
+
+
+def empty(case: Case, handed: Mapping[str, Any], files: Mapping[str, str]) -> list[Problem]:
+    """Images of one colour and stages without a number, where the reference has more."""
+    problems = _blank(case, as_bytes(handed["color"]), files.get("color", "color")) if "color" in handed else []
     stages = {name: array for name, array in handed.items() if name in case.frame.stages}
     references = flat(case.frame.stages)
     for name, array in flat(stages).items():

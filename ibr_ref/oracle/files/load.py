@@ -18,7 +18,7 @@ from ibr_ref.oracle.files.npy import Accept, Header, digest, read_array
 from ibr_ref.oracle.files.pictures import read_bytes
 from ibr_ref.oracle.files.problem import UnusableError, field_problem
 from ibr_ref.oracle.files.write import LARGEST_DOCUMENT
-from ibr_ref.oracle.schema import Document, adapter, build, describe_inputs, input_files
+from ibr_ref.oracle.schema import Document, build, describe_inputs, input_files, read
 from ibr_ref.oracle.schema.base import Inputs, Stored, StoredFile
 
 
@@ -57,7 +57,7 @@ def documents(path: Path) -> tuple[Document, Manifest]:
     """`case.json` and `manifest.json` of a folder, checked by their models, and that they name the same files."""
     data = small_file(path, "case.json", LARGEST_DOCUMENT)
     try:
-        document = adapter().validate_json(data)
+        document = read(data)
     except ValidationError as error:
         raise field_problem(path / "case.json", error) from None
     try:

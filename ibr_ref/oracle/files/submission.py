@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from os import PathLike
 from pathlib import Path
@@ -39,9 +39,11 @@ class Submission:
     """By their names in the contract: colour as uint8 or float64, other floats as float64, integers and flags in the
     reference's types; an atlas as a tuple of pages."""
     problems: tuple[Problem, ...]
-    """Any makes the verdict INCONCLUSIVE: files that cannot be used, an image that nothing was drawn into."""
+    """Any makes the verdict INCONCLUSIVE: files that cannot be used."""
     declaration: Declaration
     """What the port says of its device."""
+    files: Mapping[str, str] = field(default_factory=dict)
+    """Where each array came from."""
 
     @property
     def profile(self) -> str | None:
@@ -109,7 +111,13 @@ class _Collector:
         self.problems += [Problem(name, "no such page", "all pages of an atlas, or none") for name in missing]
         if not self.problems:
             self.problems += content_problems(self.case, handed, self.files)
-        return Submission(source=source, handed=handed, problems=tuple(self.problems), declaration=self.declaration)
+        return Submission(
+            source=source,
+            handed=handed,
+            problems=tuple(self.problems),
+            declaration=self.declaration,
+            files=self.files,
+        )
 
     def add_file(self, root: Path, name: str) -> None:
         """A file of the folder, if it is one that counts."""

@@ -39,7 +39,13 @@ class Machine(Bounds):
             self._positions = None
 
     def fetch(self, texels: Any, u: Any, v: Any, repeat: bool) -> Number:
-        """Bilinear."""
+        """Bilinear. Texels that have bounds are mixed as their values are."""
+        if isinstance(texels, Number):
+            found = self.fetch(texels.value, u, v, repeat)
+            if not np.any(texels.deviation):
+                return found
+            off = self.fetch(np.array(np.broadcast_to(texels.deviation, texels.shape)), u, v, repeat).high
+            return Number(self, found.value, found.error + off, found.slopes, found.lane)
         texture = self._texture(texels, repeat)
         height, width = texture.texels.shape[:2]
         return fetch(self, texture, self._position(self.of(u), width), self._position(self.of(v), height))

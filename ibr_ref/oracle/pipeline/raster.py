@@ -7,6 +7,7 @@ up to `moved` along x and y. Everything else of a fragment follows from where in
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -15,6 +16,7 @@ import numpy as np
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept import borders, coverage
 from ibr_ref.oracle.accept.bounded import Bounded
+from ibr_ref.oracle.accept.whole import Whole, whole
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import UNIT, Device
@@ -47,7 +49,7 @@ class Fragments:
     rounding: Floats
     """(n, 3) of a device's arithmetic."""
     pieces: Floats
-    """(n, 4) by how much each varying, and window depth, may be off besides where the picture's borders may cut."""
+    """(n, 4) by how much each varying, and window depth, may be off besides, over what else planes may be set up."""
     gradient: Floats
     """(n, 3, 2) along x and y, a pixel."""
     moved: Floats
@@ -71,8 +73,12 @@ class Fragments:
         return found
 
 
-def fragments_of(program: Any, polygons: list[tuple[int, list[Any]]], polygon: int, device: Device) -> Fragments:
-    """The candidates of one polygon's faces, as clipping leaves them: numbers, and corners (7,) in clip and patch space."""
+Faces = list[tuple[int, list[Any]]]
+"""Their numbers, and corners (7,) in clip and patch space."""
+
+
+def fragments_of(program: Any, polygons: Faces, unclipped: Faces, polygon: int, device: Device) -> Fragments:
+    """The candidates of one polygon's faces, as clipping leaves them, and as they were."""
     width, height = program.width, program.height
     triangles = program.fanned(polygons)
     cuts = _cuts(program, polygons, device)
@@ -92,14 +98,16 @@ def fragments_of(program: Any, polygons: list[tuple[int, list[Any]]], polygon: i
     shift = program.varying_centre() - program.centre()
     value, rounding, gradient = _weights(found, at_x, at_y, area, device, shift)
     values = np.array([[c.value[:, k] for k in range(3)] for c in corners]).reshape(-1, 3, 7)
-    pieces, moved = _pieces(cuts, found, (at_x, at_y, values), device)
+    wholes = _wholes(program, polygons, unclipped, device)
+    pieces, moved = _pieces([*enumerate(cuts), *enumerate(wholes)], found, (at_x, at_y, values), device)
     t, pixel = found.triangle, found.rows * width + found.columns
+    kept = ~np.array([program.may_lie_in_a_plane(vertices) for _, vertices in triangles], np.bool_)
     result = Fragments(
         pixel=pixel,
         polygon=np.full(len(t), polygon),
         triangle=t,
         face=np.array([program.face_number(face) for face, _ in triangles], np.int64)[t],
-        certain=_surely_covered(pixel, found, values[..., 4:]),
+        certain=_surely_covered(pixel, found, values[..., 4:]) & kept[t],
         weights=value,
         rounding=rounding,
         pieces=pieces,
@@ -114,18 +122,37 @@ def _bounded(x: Number, shift: float, device: Device) -> Bounded:
     return Bounded(x.value.T + shift, np.broadcast_to(x.deviation, x.shape).T, device)
 
 
-def _cuts(program: Any, polygons: list[tuple[int, list[Any]]], device: Device) -> list[borders.Cut | None]:
+def _cuts(program: Any, polygons: Faces, device: Device) -> list[borders.Cut | None]:
     """Of each triangle: what the picture's borders leave of its polygon, where the device may cut it there."""
     result: list[borders.Cut | None] = []
     for _, corners in polygons:
         found = None
         if device.clip_border and corners:
-            clip, error = (
-                np.stack([np.broadcast_to(get(c), c.shape)[:4] for c in corners]) for get in (_value, _deviation)
-            )
-            found = borders.cut(clip, error, (program.width, program.height), device)
+            found = borders.cut(*_clip(corners), (program.width, program.height), device)
         result += [found] * max(0, len(corners) - 2)
     return result
+
+
+def _wholes(program: Any, polygons: Faces, unclipped: Faces, device: Device) -> list[Whole | None]:
+    """Of each triangle: the one that it was clipped from, where the device may set up that one."""
+    result: list[Whole | None] = []
+    for (_, corners), (_, before) in zip(polygons, unclipped, strict=True):
+        found = None
+        if device.whole and corners and not _same(corners, before):
+            found = whole(*_clip(before), (program.width, program.height), device)
+        result += [found] * max(0, len(corners) - 2)
+    return result
+
+
+def _same(corners: list[Any], before: list[Any]) -> bool:
+    """Whether clipping left a polygon as it was."""
+    return len(corners) == len(before) and all(map(np.array_equal, map(_value, corners), map(_value, before)))
+
+
+def _clip(corners: list[Any]) -> tuple[Floats, Floats]:
+    """(m, 4) clip coordinates and how far they may be off."""
+    clip, error = (np.stack([np.broadcast_to(get(c), c.shape)[:4] for c in corners]) for get in (_value, _deviation))
+    return clip, error
 
 
 def _value(corner: Number) -> Floats:
@@ -137,7 +164,10 @@ def _deviation(corner: Number) -> Floats:
 
 
 def _pieces(
-    cuts: list[borders.Cut | None], found: coverage.Fragments, corners: tuple[Floats, Floats, Floats], device: Device
+    setups: Iterable[tuple[int, borders.Cut | Whole | None]],
+    found: coverage.Fragments,
+    corners: tuple[Floats, Floats, Floats],
+    device: Device,
 ) -> tuple[Floats, Floats]:
     """(n, 4) what planes of pieces make of varyings and of depth, (n,) how far their points are moved.
 
@@ -146,14 +176,14 @@ def _pieces(
     """
     off, moved = np.zeros((len(found.triangle), 4)), found.moved.copy()
     x, y, values = corners
-    for triangle, each in enumerate(cuts):
+    for triangle, each in setups:
         if each is None:
             continue
         mine = np.flatnonzero(found.triangle == triangle)
         px, py = (np.asarray(a[mine] + 0.5, np.float64) for a in (found.columns, found.rows))
         z, w = values[triangle, :, 2], values[triangle, :, 3]
         planes = np.column_stack([values[triangle, :, 4:], z, np.ones(3)]) / w[:, None]
-        for piece in borders.pieces(each, (x[triangle], y[triangle]), px, py, device):
+        for piece in each.pieces((x[triangle], y[triangle]), px, py, device):
             at = mine[piece.points]
             here, plane = found.weights[at] @ planes, piece.off(planes)
             under = here[:, 4] - plane[:, 4]

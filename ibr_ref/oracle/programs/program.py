@@ -17,6 +17,11 @@ Bools = Any
 PROGRAMS = __name__.rpartition(".")[0]
 
 
+def right(program: Any, *names: str) -> bool:
+    """Whether no fault changes these methods of a program, or of a part of one."""
+    return all(getattr(type(program), name).__module__.startswith(PROGRAMS) for name in names)
+
+
 class Program:
     """What every program has at hand. A known bug is a subclass that overrides one method."""
 
@@ -38,7 +43,7 @@ class Program:
 
     def right(self, *names: str) -> bool:
         """Whether no fault changes these methods: only then does another legal form stand beside what they compute."""
-        return all(getattr(type(self), name).__module__.startswith(PROGRAMS) for name in names)
+        return right(self, *names)
 
     def cross(self, a: Vector, b: Vector) -> Vector:
         """The cross product."""

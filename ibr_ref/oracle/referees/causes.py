@@ -112,7 +112,7 @@ class _Suspects:
         return [few, some]
 
     def explains(self, mutant: Mutant, among: Bools | None) -> bool:
-        """Whether a program contradicts no element `among`, and certainly explains a wrong one of them.
+        """Whether a program contradicts no element `among`; of all elements, it must certainly explain a wrong one too.
 
         Nor may it in the stages from its bug on: what a wrong program takes for no input at all is not judged.
         """
@@ -129,7 +129,5 @@ class _Suspects:
         judgement = replay.judge(self.stage)
         if judgement.wrong.size != len(self.wrong):  # it has another number of elements
             return not judgement.wrong.any()
-        sure = self.wrong & ~judgement.undecided.reshape(-1)
-        if among is not None:
-            sure &= among
-        return bool(not judgement.wrong.any() and sure.any())
+        sure = among is not None or (self.wrong & ~judgement.undecided.reshape(-1)).any()
+        return bool(sure and not judgement.wrong.any())

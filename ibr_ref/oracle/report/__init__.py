@@ -2,6 +2,6 @@
 
 from ibr_ref.oracle.report.junit import junit
 from ibr_ref.oracle.report.page import page, write
-from ibr_ref.oracle.report.run import Entry, entry, run_page, write_run
+from ibr_ref.oracle.report.run import Entry, Facts, entry, run_page, write_run
 
-__all__ = ["Entry", "entry", "junit", "page", "run_page", "write", "write_run"]
+__all__ = ["Entry", "Facts", "entry", "junit", "page", "run_page", "write", "write_run"]

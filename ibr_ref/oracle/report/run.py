@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from urllib.parse import quote
@@ -15,6 +15,7 @@ from ibr_ref.array_types import Bytes
 from ibr_ref.io.outputs import atomic
 from ibr_ref.oracle.examination import Examination
 from ibr_ref.oracle.findings import Findings, StageVerdict
+from ibr_ref.oracle.probe import DRIVER_FAULTS, Measured
 from ibr_ref.oracle.report import pictures
 from ibr_ref.oracle.report.page import asset, template
 
@@ -67,24 +68,43 @@ class Entry:
         return quote(f"{self.name}.html")
 
 
+@dataclass(frozen=True)
+class Facts:
+    """The device that a run was drawn on."""
+
+    port: str
+    words: str
+    """The device, as its driver calls it."""
+    declares: Mapping[str, int | str]
+    """As the port declares it."""
+    measured: Measured
+    unmeasured: Mapping[str, str] = field(default_factory=dict)
+    """Probes that were not drawn, and why."""
+
+    @property
+    def faults(self) -> list[tuple[str, str, str]]:
+        """The driver's: name, what it means, what shows it."""
+        return [(name, DRIVER_FAULTS[name], why) for name, why in self.measured.faults.items()]
+
+
 def entry(name: str, verdict: Findings, seconds: float, examination: Examination | None) -> Entry:
     """Of what has been judged; its pictures are not kept."""
     picture = None if examination is None else _thumbnails(examination)
     return Entry(name, verdict, seconds, picture, page=examination is not None)
 
 
-def write_run(entries: Sequence[Entry], folder: str | PathLike[str]) -> None:
+def write_run(entries: Sequence[Entry], folder: str | PathLike[str], facts: Facts | None = None) -> None:
     """Write the page into the folder of all pages. Raises OSError with the path."""
     with atomic(Path(folder) / INDEX) as file:
-        file.write(run_page(entries).encode("utf-8"))
+        file.write(run_page(entries, facts).encode("utf-8"))
 
 
-def run_page(entries: Sequence[Entry]) -> str:
-    """The page as text."""
+def run_page(entries: Sequence[Entry], facts: Facts | None = None) -> str:
+    """The page as text; with the device above the table where one is known."""
     outcomes = [str(each.verdict.outcome) for each in entries]
     counts = ", ".join(f"{outcomes.count(o)} {o}" for o in dict.fromkeys(sorted(outcomes)))
     return template("run.html").render(
-        entries=entries, counts=counts, style=asset("page.css"), script=asset("run.js")
+        entries=entries, facts=facts, counts=counts, style=asset("page.css"), script=asset("run.js")
     )  # fmt: skip
 
 

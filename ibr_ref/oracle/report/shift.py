@@ -1,21 +1,24 @@
-"""By how much a port's rasterization is shifted: for each wrong pixel the way to where the reference has its varyings.
+"""By how much a port's rasterization is shifted: for each wrong pixel the way to where the reference has what it has.
 
 With v the varyings of the reference and J their differences per pixel on the same face, the shift s solves J s = v' - v in
-the sense of least squares. A sample point half a pixel off shows as (0.5, 0.5) everywhere, other rounding as noise.
+the sense of least squares. A sample point half a pixel off shows as (0.5, 0.5) everywhere, other rounding as noise. Splats
+have no varyings: of them it is the one shift of all sample points that explains most winners (`splats`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.array_types import Bools, Bytes, Floats
 from ibr_ref.oracle.examination import Examination
+from ibr_ref.oracle.report import splats
 
-VARYINGS = {"raster.patch": ("raster.face", "raster.patch_id")}
-"""Arrays of varyings, and what pixels of one face have in common."""
+VARYINGS = {"raster.patch": ("raster.face", "raster.patch_id"), "project.coord": ()}
+"""Arrays of varyings, and what pixels of one face have in common; of several light samples the first is looked at."""
 
 FARTHEST = 2.0
 """Pixels: what is farther off is no shift, but another thing."""
@@ -58,18 +61,26 @@ class Shift:
 def shift(examination: Examination) -> Shift | None:
     """Of the varyings that are wrong; None: none are, or were not handed in, or no pixel is explained by any."""
     case, handed = examination.case, examination.handed
-    for array, same in VARYINGS.items():
+    for array in (*VARYINGS, splats.WINNER):
         judgement = next((j for j in examination.judgements if array in j.arrays), None)
         if judgement is None or not judgement.wrong.any() or array not in handed:
             continue
-        ours, theirs = (np.asarray(a, np.float64) for a in (case.frame.stages[array], handed[array]))
-        labels = [np.asarray(case.frame.stages[name]) for name in same if name in case.frame.stages]
+        wrong = _first_sample(judgement.wrong, 2)
         with np.errstate(all="ignore"):
-            pixels = _shifts(ours, theirs, labels)
-        pixels[~judgement.wrong] = np.nan
-        found = Shift(array, pixels, int(judgement.wrong.sum()))
+            if array == splats.WINNER:
+                pixels = splats.shifts(case, handed, wrong)
+            else:
+                ours, theirs = (_first_sample(np.asarray(a[array]), 3) for a in (case.frame.stages, handed))
+                pixels = _shifts(ours, theirs, [np.asarray(case.frame.stages[name]) for name in VARYINGS[array]])
+        pixels[~wrong] = np.nan
+        found = Shift(array, pixels, int(wrong.sum()))
         return found if found.explained else None
     return None
+
+
+def _first_sample(array: NDArray[Any], axes: int) -> NDArray[Any]:
+    """Without a leading axis of light samples."""
+    return array[0] if array.ndim > axes else array
 
 
 def _shifts(ours: Floats, theirs: Floats, labels: list[NDArray[np.generic]]) -> Floats:

@@ -7,8 +7,19 @@ from ibr_ref.oracle.schema.document import (
     describe,
     describe_inputs,
     input_files,
+    read,
     schema,
     schema_text,
 )
 
-__all__ = ["Document", "adapter", "build", "describe", "describe_inputs", "input_files", "schema", "schema_text"]
+__all__ = [
+    "Document",
+    "adapter",
+    "build",
+    "describe",
+    "describe_inputs",
+    "input_files",
+    "read",
+    "schema",
+    "schema_text",
+]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, TypeAdapter
+from pydantic_core import from_json
 
 import ibr_ref
 from ibr_ref import methods
@@ -81,8 +82,23 @@ def schema_of(method: str) -> Schema:
     return found
 
 
+def read(data: bytes) -> Document:
+    """`case.json`, checked by the model of its method alone: whoever reads one case need not import all methods.
+
+    Raises pydantic.ValidationError.
+    """
+    try:
+        found = from_json(data)["method"]
+    except (ValueError, TypeError, KeyError):
+        found = None  # which the adapter of all says better
+    if found not in methods.names():
+        return adapter().validate_json(data)
+    document: Document = schema_of(found).document.model_validate_json(data)
+    return document
+
+
 def adapter() -> TypeAdapter[Document]:
-    """What reads and checks `case.json`, of any method."""
+    """What describes `case.json`, of any method."""
     return _adapter(methods.records())
 
 

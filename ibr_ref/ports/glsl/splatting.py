@@ -180,12 +180,12 @@ class Port:
         programs = [self._program(_defines(scene, image, {"CAPTURE": True}), tuple(VARYINGS)) for image in scene.images]
         rows = np.concatenate([self._capture(draw, program) for draw, program in zip(draws, programs, strict=True)])
         window, depth, width, color = np.split(rows, np.cumsum(list(VARYINGS.values()))[:-1], axis=1)
-        dropped = width <= 0.0
+        dropped = width < 0.0
         source = [np.pad(draw.pixels, ((0, 0), (1, 0)), constant_values=number) for number, draw in enumerate(draws)]
         return {
             "vertex.window": np.where(dropped, np.nan, window),
             "vertex.depth": np.where(dropped, np.nan, depth)[:, 0],
-            "vertex.width": width[:, 0],
+            "vertex.width": np.where(dropped, 0.0, width)[:, 0],
             "vertex.color": color,
             "vertex.source": np.concatenate(source).astype(np.int32),
         }

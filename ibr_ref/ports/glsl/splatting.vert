@@ -121,7 +121,7 @@ void main() {
 #ifdef CAPTURE
     window = centre;
     depth = ndc.z;
-    width = kept ? size : 0.0;
+    width = kept ? size : -1.0;  // the law may make splats of no width, which are not dropped
 #else
 #ifdef QUADS
     int number = gl_VertexID >> 2;              // four vertices a splat

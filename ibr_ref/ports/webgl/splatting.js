@@ -108,7 +108,7 @@ function arrays(target, captured, source) {
     const {width, height} = target;
     const rows = captured.flatMap(each => [...each]);
     const count = rows.length / 7;
-    const dropped = i => rows[7 * i + 3] <= 0;
+    const dropped = i => rows[7 * i + 3] < 0;
     const column = (which, blank) => Float32Array.from({length: count * which.length}, (_, at) => {
         const i = Math.floor(at / which.length);
         return blank && dropped(i) ? NaN : rows[7 * i + which[at % which.length]];
@@ -117,7 +117,7 @@ function arrays(target, captured, source) {
     return {
         "vertex.window": {data: column([0, 1], true), shape: [count, 2]},
         "vertex.depth": {data: column([2], true), shape: [count]},
-        "vertex.width": {data: column([3], false), shape: [count]},
+        "vertex.width": {data: column([3], false).map(width => Math.max(width, 0)), shape: [count]},
         "vertex.color": {data: column([4, 5, 6], false), shape: [count, 3]},
         "vertex.source": {data: Int32Array.from(source), shape: [count, 3]},
         "raster.splat": {data: channels(target.read("splat"), [0]), shape: [height, width]},

@@ -263,3 +263,19 @@ def compute(device: Device, code: str, entry: str, resources: Mapping[int, Any],
     run.dispatch_workgroups(-(-count // 64), 1, 1)
     run.end()
     device.device.queue.submit([encoder.finish()])
+
+
+_REMAINDER = """
+@group(0) @binding(0) var<storage, read_write> numbers: array<i32>;
+@compute @workgroup_size(64) fn remainder(@builtin(global_invocation_id) at: vec3u) {
+    if (at.x == 0u) { numbers[2] = numbers[0] % numbers[1]; }
+}
+"""
+
+
+def remainder(device: Device, a: int, b: int) -> int:
+    """What the device makes of a % b of two i32: by WGSL truncated, with the sign of a."""
+    usage = wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC
+    numbers = buffer(device, np.array([a, b, 0, 0], np.int32).tobytes(), usage)
+    compute(device, _REMAINDER, "remainder", {0: numbers}, 1)
+    return int(read_buffer(device, numbers, np.int32, 4)[0, 2])

@@ -93,11 +93,11 @@ class Port:
             rows.append(gpu.read_buffer(self.device, made, np.float32, 8)[:count])
             sources.append(np.pad(draw.pixels[:, ::-1].astype(np.int32), ((0, 0), (1, 0)), constant_values=number))
         made_rows = np.concatenate(rows)
-        dropped = made_rows[:, 3] <= 0.0
+        dropped = made_rows[:, 3] < 0.0
         return {
             "vertex.window": np.where(dropped[:, None], np.nan, made_rows[:, :2]),
             "vertex.depth": np.where(dropped, np.nan, made_rows[:, 2]),
-            "vertex.width": made_rows[:, 3],
+            "vertex.width": np.where(dropped, 0.0, made_rows[:, 3]),
             "vertex.color": made_rows[:, 4:7],
             "vertex.source": np.concatenate(sources),
         }

@@ -24,7 +24,7 @@ struct Splats {
 struct Splat {
     window: vec2f,
     depth: f32,
-    width: f32,                 // 0: beside the clip volume
+    width: f32,                 // -1: beside the clip volume; the law may make 0
     color: vec3f,
 }
 
@@ -63,7 +63,7 @@ fn splat_of(pixel: vec2u) -> Splat {
     let kept = clip.w > 0.0 && clip.z >= 0.0 && clip.z <= clip.w;
     let ndc = clip.xyz / select(1.0, clip.w, clip.w > 0.0);
     let centre = vec2f(ndc.x + 1.0, 1.0 - ndc.y) * 0.5 * s.picture.xy;
-    return Splat(centre, ndc.z, select(0.0, splat_width(world, view), kept), color);
+    return Splat(centre, ndc.z, select(-1.0, splat_width(world, view), kept), color);
 }
 
 struct Corner {

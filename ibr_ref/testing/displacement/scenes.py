@@ -105,12 +105,18 @@ CLEAR = ("straight above", "oblique", "far off", "beside", "inside")
 
 
 @st.composite
-def small(draw: DrawFn, pixels: SearchStrategy[tuple[int, int]], texels: SearchStrategy[tuple[int, int]]) -> Drawn:
-    """A polygon, or two, with maps of few texels in a picture of few pixels."""
+def small(
+    draw: DrawFn, pixels: SearchStrategy[tuple[int, int]], texels: SearchStrategy[tuple[int, int]], method: str
+) -> Drawn:
+    """A polygon, or two, with maps of few texels in a picture of few pixels, drawn by a search."""
     first = draw(shapes())
     others = [draw(neighbours(first)) for _ in range(draw(often(0, 1)))]
     camera = draw(cameras(first, draw(st.sampled_from(CLEAR)), pixels))
-    params = dataclasses.replace(draw(parameters(eyes_above([first, *others], camera))), method="protruded")
+    params = draw(parameters(eyes_above([first, *others], camera)))
+    fewest = draw(st.integers(1, 12))
+    params = dataclasses.replace(
+        params, method=method, min_steps=fewest, max_steps=fewest + draw(st.integers(0, 12)), lod_bias=0.0
+    )
     domains = st.sampled_from(["clip", "repeat"]) if params.drawn_faces == "base" else st.just("clip")
     scene = Scene(
         polygons=[draw(polygons(shape, draw(domains), aligned=False, sizes=texels)) for shape in (first, *others)],

@@ -61,10 +61,10 @@ def test_float32_planes_of_any_piece_stay_within_their_bounds(seed: int) -> None
     rows, columns = np.mgrid[: SIZE[1], : SIZE[0]]
     px, py = columns.ravel() + 0.5, rows.ravel() + 0.5
     worst = 0.0
-    for piece in borders.pieces(left, (window[:, 0], window[:, 1]), px, py, ROUNDED):
+    for piece in left.pieces((window[:, 0], window[:, 1]), px, py, ROUNDED):
         at = piece.shares @ np.column_stack([window, planes])
         points = px[piece.points], py[piece.points]
-        shares = borders._weights(window[:, 0], window[:, 1], *points)
+        shares = borders.weights(window[:, 0], window[:, 1], *points)
         off = np.abs(float_planes(at[:, 0], at[:, 1], at[:, 2:], *points) - shares @ planes)
         bound = piece.off(planes)
         assert (off <= bound).all()
@@ -78,7 +78,7 @@ def test_wide_pieces_are_hardly_wider() -> None:
     left = cut(window)
     assert left is not None
     px, py = np.array([50.5]), np.array([40.5])
-    found = [*borders.pieces(left, (window[:, 0], window[:, 1]), px, py, ROUNDED)]
+    found = [*left.pieces((window[:, 0], window[:, 1]), px, py, ROUNDED)]
     assert found
     assert max(float(piece.off(np.eye(3)).max()) for piece in found) < 1e-4
     assert all(piece.moved < 1.0 / 200.0 for piece in found)

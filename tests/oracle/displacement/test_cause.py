@@ -9,7 +9,7 @@ from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.oracle.programs.displacement import Port
-from tests.oracle.displacement.drawn import REFEREE, Arrays, case, draw
+from tests.oracle.displacement.drawn import REFEREE, Arrays, case, draw, image
 
 STAGED = (
     "height scale in half precision",
@@ -25,6 +25,18 @@ STAGED = (
     "depth as (z + 1)/2",
 )
 """One of each kind; all of them are in the note of the naming tables."""
+
+PICTURED = (
+    "height scale in half precision",
+    "window a pixel narrower",
+    "first sample left out",
+    "one orientation culled",
+    "nearest heights",
+    "delta on the height of the step",
+    "gradient along the edges",
+    "specular off by 2 %",
+)
+"""Of every stage, some that show at few pixels, or by little."""
 
 
 def named(name: str, arrays: Arrays) -> list[str]:
@@ -56,3 +68,34 @@ class _Unknown(Port):
 def test_a_bug_that_is_not_known_has_no_name() -> None:
     name = "displacement-slope"
     assert named(name, draw(name, Policy(), _Unknown)) == []
+
+
+def named_by_the_picture(name: str, arrays: Arrays) -> list[str]:
+    wrong = REFEREE.judge_image(case(name), IEEE32, arrays)
+    assert wrong.wrong.any()
+    found = REFEREE.causes(case(name), IEEE32, arrays, wrong)
+    assert found is not None
+    assert found.given_up_after is None
+    return [cause.name for cause in found.causes]
+
+
+@pytest.mark.parametrize("mutant", PICTURED)
+def test_a_picture_by_itself_names_the_bug(mutant: str) -> None:
+    name = "displacement-slope"
+    port = next(m.port for m in MUTANTS if m.name == mutant)
+    assert mutant in named_by_the_picture(name, image(draw(name, Policy(), port)))
+
+
+def test_nor_has_it_by_the_picture() -> None:
+    name = "displacement-slope"
+    assert named_by_the_picture(name, image(draw(name, Policy(), _Unknown))) == []
+
+
+def test_of_some_pixels_a_port_draws_the_same() -> None:
+    name = "displacement-crossing"
+    whole, among = draw(name, Policy()), np.zeros(case(name).frame.depth.shape, np.bool_)
+    among[::3, 1::4] = True
+    some = Port(case(name).scene, case(name).params, Policy(), {}).render(among)
+    for array, values in some.items():
+        if values.shape[:2] == among.shape:
+            np.testing.assert_array_equal(values[among], whole[array][among], err_msg=array)

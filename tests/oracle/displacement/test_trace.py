@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 from dataclasses import replace
+from weakref import ref
 
 import numpy as np
 import pytest
@@ -152,3 +154,12 @@ def test_candidates_are_computed_once_a_case_and_device() -> None:
     from ibr_ref.oracle.referees.displacement.picture import picture_of
 
     assert picture_of(what, IEEE32) is picture_of(what, IEEE32)
+
+
+def test_a_judged_case_is_freed_with_what_was_computed_of_it() -> None:
+    what = replace(case("displacement-mapped"))
+    assert not REFEREE.judge_image(what, IEEE32, {"color": what.frame.color}).wrong.any()
+    gone = ref(what)
+    del what
+    gc.collect()
+    assert gone() is None

@@ -9,13 +9,19 @@ import pytest
 
 from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases import Case
-from ibr_ref.oracle.files import Submission, stale, submission_from_arrays
+from ibr_ref.oracle.files import Problem, Submission, empty, stale, submission_from_arrays
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 
 
 def with_color(case: Case, color: Any) -> Submission:
     return submission_from_arrays(case, color=color)
+
+
+def emptiness(case: Case, submission: Submission) -> list[Problem]:
+    """Of one that can be judged."""
+    assert submission.usable
+    return empty(case, submission.handed, submission.files)
 
 
 @pytest.mark.parametrize(
@@ -25,7 +31,7 @@ def with_color(case: Case, color: Any) -> Submission:
 def test_blank(maps_case: Case, color: tuple[float, ...], word: str, dtype: Any) -> None:
     image = np.broadcast_to(color, maps_case.frame.color.shape)
     image = color_bytes(image) if dtype == np.uint8 else image.astype(dtype)
-    (problem,) = with_color(maps_case, image).problems
+    (problem,) = emptiness(maps_case, with_color(maps_case, image))
     assert "nothing rendered" in problem.found
     assert word in problem.found
 
@@ -40,13 +46,13 @@ def test_a_case_that_is_blank_itself() -> None:
     )  # fmt: skip
     blank = Case(name="x", method="displacement", kind="easy", about="x", profile="gl", scene=away, params=case.params)
     assert len(np.unique(blank.frame.color.reshape(-1, 3), axis=0)) == 1
-    assert with_color(blank, blank.frame.color).usable
+    assert not emptiness(blank, with_color(blank, blank.frame.color))
 
 
 def test_one_pixel_drawn_is_not_blank(maps_case: Case) -> None:
     image = np.zeros(maps_case.frame.color.shape, np.uint8)
     image[3, 4] = 1
-    assert with_color(maps_case, image).usable
+    assert not emptiness(maps_case, with_color(maps_case, image))
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
@@ -80,7 +86,8 @@ def test_too_little(maps_case: Case) -> None:
 
 def test_a_stage_without_numbers(maps_case: Case) -> None:
     hit = np.full_like(maps_case.frame.stages["march.hit"], np.nan)
-    (problem,) = submission_from_arrays(maps_case, color=maps_case.frame.color, stages={"march.hit": hit}).problems
+    submission = submission_from_arrays(maps_case, color=maps_case.frame.color, stages={"march.hit": hit})
+    (problem,) = emptiness(maps_case, submission)
     assert problem.file == "march.hit"
 
 

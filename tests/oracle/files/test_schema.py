@@ -14,7 +14,7 @@ import ibr_ref
 from ibr_ref import methods
 from ibr_ref.displacement import inputs as displacement_inputs
 from ibr_ref.oracle.cases import Case
-from ibr_ref.oracle.schema import adapter, describe, schema, schema_text
+from ibr_ref.oracle.schema import adapter, describe, read, schema, schema_text
 from ibr_ref.oracle.schema.base import values
 from ibr_ref.oracle.schema.displacement import DisplacementParams
 from ibr_ref.oracle.schema.shadows import ShadowsParams
@@ -119,7 +119,9 @@ def test_every_stage_of_a_frame_is_described(case: Case) -> None:
 
 def test_a_document_is_what_it_reads_back(case: Case) -> None:
     document, _ = describe(case)
-    assert adapter().validate_json(document.model_dump_json()) == document
+    text = document.model_dump_json()
+    assert adapter().validate_json(text) == document
+    assert read(text.encode()) == document
 
 
 def test_documents_obey_the_schema(case: Case) -> None:

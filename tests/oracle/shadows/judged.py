@@ -9,8 +9,8 @@ from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.shadows import CASES
 from ibr_ref.oracle.declaration import device_of
+from ibr_ref.oracle.faults.shadows import Port
 from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.ports.shadows import Port
 from ibr_ref.oracle.referees.shadows import ShadowsReferee
 from tests.oracle.judgements import in_bytes
 

@@ -11,7 +11,7 @@ import pytest
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.faults.kinds import Mutant, Variant
-from ibr_ref.oracle.ports.shadows import MUTANTS, VARIANTS, Port
+from ibr_ref.oracle.faults.shadows import MUTANTS, VARIANTS, Port
 from ibr_ref.oracle.self_test import port_output
 from ibr_ref.oracle.trials import judge
 from tests.oracle.devices import random_policy

@@ -11,7 +11,6 @@ from ibr_ref.oracle.device import IEEE32, PROFILES
 from ibr_ref.oracle.referees.shadows.accumulate import accumulated
 from ibr_ref.oracle.referees.shadows.image import Accepted
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
-from ibr_ref.oracle.referees.shadows.places import positions
 from tests.oracle.judgements import complaints, in_bytes, picture
 from tests.oracle.shadows.judged import REAL, REFEREE, SMALL, case, image, reference, stages
 
@@ -43,7 +42,7 @@ def test_what_is_recomputed_is_what_the_reference_has(name: str) -> None:
     close = {"rtol": 1e-12, "atol": 1e-11}
     np.testing.assert_allclose(seen.depth.value[some], expected["depth"].reshape(-1)[at], **close)
     coords, images = (made.reference(f"{array}") for array in ("project.coord", "warp.image"))
-    for i, place in enumerate(made.coordinates):
+    for i, place in enumerate(map(made.coordinate, range(made.count))):
         mine = np.stack([axis.value[some] for axis in place.axes], axis=1)
         np.testing.assert_allclose(mine, coords[i].reshape(-1, 3)[at], rtol=1e-10, atol=1e-10)
         np.testing.assert_allclose(made.map(i).firm.value, images[i], **close)
@@ -57,9 +56,8 @@ def test_what_is_recomputed_is_what_the_reference_has(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in SMALL if case(name).params.method == "warp"])
 def test_places_and_grids_are_the_reference_s(name: str) -> None:
     made, expected = Inputs(case(name), IEEE32), reference(name)
-    x, y = positions(case(name), IEEE32)
-    np.testing.assert_allclose([p.value for p in x], expected["maps.positions"][0, :, 0], rtol=1e-12)
-    np.testing.assert_allclose([p.value for p in y], expected["maps.positions"][:, 0, 1], rtol=1e-12)
+    positions = made.model.program.positions().value
+    np.testing.assert_allclose(positions, expected["maps.positions"], rtol=1e-12)
     for sample in range(made.count):
         (spot,) = made.places(sample)
         cells, fractions = (made.reference(array)[sample] for array in ("warp.cell", "warp.fraction"))
@@ -77,7 +75,7 @@ def test_sums_are_the_reference_s(name: str) -> None:
     made = Inputs(case(name), IEEE32, reference(name))
     own = made.own("project.shadow")
     assert own is not None
-    sums = accumulated([exact(shadow, IEEE32) for shadow in own], unorm8=False)
+    sums = accumulated(made.model, [exact(shadow, IEEE32) for shadow in own])
     np.testing.assert_allclose(sums.value, reference(name)["accumulate.shadow"], rtol=1e-12)
 
 

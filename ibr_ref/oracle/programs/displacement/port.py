@@ -17,6 +17,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.oracle.programs.displacement.case import Bools
 from ibr_ref.oracle.programs.displacement.raster import Raster
 from ibr_ref.oracle.programs.displacement.resolve import Drawn, Resolve
 from ibr_ref.oracle.programs.displacement.shade import Shade
@@ -42,8 +43,11 @@ class Port(Shade, Resolve, Raster):
         found: Self = super().__new__(kind)
         return found
 
-    def render(self) -> dict[str, NDArray[np.generic]]:
-        """All stage arrays of the contract but the margins, "color" (H, W, 3) and "depth" (H, W)."""
+    def render(self, among: Bools | None = None) -> dict[str, NDArray[np.generic]]:
+        """All stage arrays of the contract but the margins, "color" (H, W, 3) and "depth" (H, W).
+
+        among: (H, W) pixels that are drawn; the others stay bare. None: all.
+        """
         clip, corners, drawn, triangles = [np.zeros((0, 4))], [np.zeros((0, 3))], [], 0
         for patch in self.patches():
             quads = self.quads(patch)
@@ -51,6 +55,8 @@ class Port(Shade, Resolve, Raster):
             corners += [self.written_corners(patch, quad) for quad in quads]
             fragments = self.fragments(quads, triangles)
             triangles = int(fragments.triangle.max(initial=triangles)) + 1
+            if among is not None:
+                fragments = fragments.at(among)
             hits = self.march(patch, fragments)
             drawn.append(Drawn(patch, fragments, hits, self.shade(patch, hits)))
         return {

@@ -26,6 +26,12 @@ class Fragments:
     depth: Floats
     """Window depth of the face."""
 
+    def at(self, pixels: Bools) -> Fragments:
+        """Those of some pixels (H, W) of the picture."""
+        mine = pixels[self.row, self.column]
+        alone = {name: getattr(self, name)[mine] for name in ("row", "column", "triangle", "face", "depth")}
+        return Fragments(**alone, point=[x[mine] for x in self.point])
+
 
 class Raster(Case):
     """Clipping, coverage, interpolation."""
@@ -55,11 +61,14 @@ class Raster(Case):
 
     def polygons(self, quads: Sequence[Quad]) -> list[tuple[int, list[Floats]]]:
         """The quads' faces, and what clipping leaves of each triangle."""
+        return [(face, self.clipped(corners)) for face, corners in self.unclipped(quads)]
+
+    def unclipped(self, quads: Sequence[Quad]) -> list[tuple[int, list[Floats]]]:
+        """The quads' faces, and the corners of each triangle as they are."""
         found = []
         for quad in quads:
             vertices = np.concatenate([quad.clip, quad.patch], axis=1)
-            for corners in self.triangles_of(quad):
-                found.append((quad.face, self.clipped([vertices[i] for i in corners])))
+            found += [(quad.face, [vertices[i] for i in corners]) for corners in self.triangles_of(quad)]
         return found
 
     def fanned(self, polygons: Sequence[tuple[int, list[Floats]]]) -> list[tuple[int, list[Floats]]]:
@@ -83,14 +92,27 @@ class Raster(Case):
     def clipped(self, polygon: list[Floats]) -> list[Floats]:
         """What is left of a polygon, corners (7,), between the near and the far plane.
 
-        A corner on a plane may count as inside or outside: what is drawn is the same but for rounding.
+        A corner on a plane may count as inside or outside: what is drawn is the same but for rounding. Only a polygon that
+        lies in a plane is drawn or not.
         """
         return self.cut(self.cut(polygon, self.near_distance), self.far_distance)
+
+    def may_lie_in_a_plane(self, polygon: list[Floats]) -> bool:
+        """Whether rounding decides if anything is left of a polygon, corners (7,)."""
+        planes = (self.near_distance, self.far_distance)
+        return any(self._open([distance(corner) for corner in polygon]) for distance in planes)
+
+    def _open(self, distances: Sequence[Floats]) -> bool:
+        """Whether none is known to be negative, not to be, or no number: of a device's own numbers that is always known."""
+        surely = self.do.surely
+        return not any(surely(d >= 0.0) or surely(d < 0.0) or surely(d != d) for d in distances)
 
     def cut(self, polygon: list[Floats], distance: Callable[[Floats], Floats]) -> list[Floats]:
         """The part of a polygon where a distance is not negative."""
         kept: list[Floats] = []
         distances = [distance(vertex) for vertex in polygon]
+        if self._open(distances):
+            return polygon
         behind = [bool(d >= 0.0) for d in distances]
         for i, here in enumerate(behind):
             j = (i + 1) % len(polygon)

@@ -14,6 +14,8 @@ from ibr_ref.oracle.faults.kinds import Variant
 from ibr_ref.oracle.programs.displacement.case import Floats, Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.port import Port
+from ibr_ref.oracle.programs.displacement.raster import Fragments
+from ibr_ref.oracle.programs.displacement.vertex import Quad
 
 # --- Other orders of operations --------------------------------------------------------------------------------------
 
@@ -140,6 +142,30 @@ class CutAtBorders(Port):
         return weights
 
 
+class WholeTriangles(Port):
+    """Covers clipped polygons, but makes planes of the triangles' own corners, behind the eye too, as SwiftShader does."""
+
+    def fragments(self, quads: Sequence[Quad], first_triangle: int) -> Fragments:
+        """Of the quads; kept is which triangle each is of."""
+        pairs = zip(self.polygons(quads), self.unclipped(quads), strict=True)
+        self.own = [np.array(before) for (_, corners), (_, before) in pairs for _ in corners[2:]]
+        self.first = first_triangle
+        return super().fragments(quads, first_triangle)
+
+    def rasterized(
+        self, vertices: Floats, triangle: int, face: int
+    ) -> tuple[Ints, Ints, Ints, Ints, list[Floats], Floats]:
+        """Of the polygon's pixels, by the triangle's planes."""
+        row, column, number, faces, *_ = super().rasterized(vertices, triangle, face)
+        own = self.own[triangle - self.first]
+        window, w = self.window(own[:, :4]), own[:, 3]
+        edges, _ = self.coverage(*(self.snapped(axis) for axis in window), row, column)
+        weights = self.weights(window, edges, row, column)
+        first = int(np.argmax(w))
+        point = [self.by_planes(weights, own[:, 4 + k], list(w), first) for k in range(3)]
+        return row, column, number, faces, point, self.face_depth(weights, self.do.divide(own[:, 2], w), w)
+
+
 VARIANTS: tuple[Variant, ...] = (
     Variant("float64", Policy(float_bits=64), "ieee32"),
     Variant("float32", Policy(), "ieee32"),
@@ -164,13 +190,18 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("8-bit weights, truncated", Policy(weight_bits=8, weight_rounding="down"), "vulkan"),
     Variant("subpixel ties up", Policy(subpixel_rounding="up"), "vulkan"),
     Variant("subpixels truncated", Policy(subpixel_rounding="down"), "vulkan"),
-    Variant("4 subpixel bits", Policy(subpixel_bits=4), "gl,subpixel_bits=4"),
+    Variant("4 subpixel bits", Policy(subpixel_bits=4), "gl,subpixel_bits=4", coarse=True),
     Variant(
         "4 subpixel bits, truncated, unsnapped",
         Policy(subpixel_bits=4, subpixel_rounding="down", snapped_varyings=False, weight_bits=8),
         "gl,subpixel_bits=4",
     ),
-    Variant("bytes filtered in bytes", Policy(filtered_bytes=True, weight_bits=8), "gl,filter_result=unorm8"),
+    Variant(
+        "bytes filtered in bytes",
+        Policy(filtered_bytes=True, weight_bits=8),
+        "gl,filter_result=unorm8",
+        coarse=True,
+    ),
     Variant("truncated", Policy(truncated=True), "d3d11"),
     Variant("truncated, fused, 8-bit weights", Policy(truncated=True, fused=True, weight_bits=8), "d3d11"),
     Variant("8-bit weights, rounded", Policy(weight_bits=8), "d3d11"),
@@ -178,7 +209,9 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("1-ULP jitter, seed 2", Policy(jitter=1, seed=2, weight_bits=8), "gl"),
     Variant("24-bit depth", Policy(depth_bits=24), "d3d11"),
     Variant("unsnapped varyings", Policy(snapped_varyings=False), "gl"),
-    Variant("cut at the borders", Policy(snapped_varyings=False), "gl", CutAtBorders),
+    Variant("cut at the borders", Policy(snapped_varyings=False), "gl", CutAtBorders, coarse=True),
+    Variant("triangles set up whole", Policy(), "vulkan", WholeTriangles),
+    Variant("triangles set up whole, 4 subpixel bits", Policy(subpixel_bits=4), "gl,subpixel_bits=4", WholeTriangles),
     Variant("8-bit colour", Policy(color_bits=8), "gl"),
     Variant("2-ULP jitter, seed 1", Policy(jitter=2, seed=1), "gl"),
     Variant("2-ULP jitter, seed 2", Policy(jitter=2, seed=2, backwards=True), "gl"),

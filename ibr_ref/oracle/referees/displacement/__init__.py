@@ -16,7 +16,6 @@ from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement, Parameter, TraceRow, up_to
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.referees.displacement import image
-from ibr_ref.oracle.referees.displacement.cause import causes, recognizes
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.parameters import parameters
 from ibr_ref.oracle.referees.displacement.replay import Port
@@ -61,11 +60,15 @@ class DisplacementReferee:
             return trace(case, device, handed, stage, index)
 
     def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
-        """The known bugs that explain a wrong stage; None: not looked for, as of a picture by itself."""
+        """The known bugs that explain a wrong stage, or a picture by itself."""
+        from ibr_ref.oracle.referees.displacement.cause import causes  # with all known bugs: what passes needs none
+
         return causes(case, device, handed, wrong)
 
     def recognizes(self, case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
-        """Whether the known bug of that name explains a wrong stage."""
+        """Whether the known bug of that name explains a wrong stage, or a picture by itself."""
+        from ibr_ref.oracle.referees.displacement.cause import recognizes
+
         return recognizes(case, device, handed, wrong, cause)
 
     def parameters(self, case: Case) -> list[Parameter]:

@@ -1,7 +1,8 @@
-"""The known bugs that explain a wrong stage."""
+"""The known bugs that explain a wrong stage, or a picture by itself."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from ibr_ref.array_types import Bools
@@ -13,6 +14,7 @@ from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.programs.displacement.raster import Raster
 from ibr_ref.oracle.programs.displacement.vertex import Vertex
 from ibr_ref.oracle.referees.causes import Inquiry
+from ibr_ref.oracle.referees.displacement.likely import likely
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.replay import ARRAYS, Port
 from ibr_ref.oracle.referees.displacement.stages import Stages
@@ -22,14 +24,15 @@ FACES = frozenset(dir(Vertex)) | frozenset(dir(Raster))
 
 
 def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
-    """The bugs that explain every element of a stage; None: not looked for.
+    """The bugs that explain every element of a stage.
 
-    Bugs of the stage first, then, where none of them does, those that may hide in it. None of a picture by itself: the bugs
-    of all stages would be suspects, a second each.
+    Bugs of the stage first, then, where none of them does, those that may hide in it. Of a picture those of all stages whose
+    pictures are like it.
     """
-    if wrong.stage == "image":
-        return None
     inquiry = _inquiry(case, device, handed)
+    if wrong.stage == "image":
+        few = likely(case, handed, wrong.wrong, inquiry.mutants)
+        return replace(inquiry, mutants=few).causes(wrong, inquiry.arrays)
     hidden = inquiry.hidden_in(wrong.stage, handed)
     if wrong.stage == "shade" and "color" in wrong.arrays:  # by the depth test another polygon's are shown
         hidden.append("resolve")
@@ -38,7 +41,7 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
 
 def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
     """Whether the bug of that name explains every element of a stage; one that there is not explains none."""
-    return wrong.stage != "image" and _inquiry(case, device, handed).recognizes(wrong, cause)
+    return _inquiry(case, device, handed).recognizes(wrong, cause)
 
 
 def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
@@ -52,9 +55,9 @@ def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
 
     return Inquiry(
         mutants=[mutant for mutant in MUTANTS if mutant.applies(case.system)],
-        arrays={**ARRAYS, "resolve": ()},
+        arrays={**ARRAYS, "resolve": (), "image": ()},
         replay=replay,
-        sampled=("march", "shade", "resolve"),
+        sampled=("march", "shade", "resolve", "image"),
     )
 
 

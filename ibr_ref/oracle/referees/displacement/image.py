@@ -179,20 +179,27 @@ def _cut(boxes: Boxes, box: Ints, low: Floats, high: Floats, off: Floats) -> Box
     return joined_boxes([left.take(~large), left.take(large).parts()])
 
 
-def judge_image(case: Case, device: Device, handed: Handed, kind: type[Program] = Program) -> Judgement:
+def judge_image(case: Case, device: Device, handed: Handed) -> Judgement:
     """Colour, and depth where it is handed in: one legal outcome must agree with both."""
-    picture = picture_of(case, device, kind)
-    search = searched(picture, Shown.of(picture, handed))
+    return judge_picture(picture_of(case, device), handed)
+
+
+def judge_picture(picture: Picture, handed: Handed) -> Judgement:
+    """The same by any program; of the pixels that the picture is of."""
+    case, among = picture.model.case, picture.among
+    search = searched(picture, Shown.of(picture, handed), among)
+    if among is not None:
+        search.accepted |= ~among
     names = ("depth", "color") if "depth" in handed else ("color",)
     blame = np.where(search.accepted, -1, np.where(search.deep, len(names) - 1, 0))
-    shape = case.frame.depth.shape
+    shape, width = case.frame.depth.shape, hull_width(picture)
     return Judgement(
         stage="image",
         element="pixel",
         arrays=names,
         wrong=~search.accepted.reshape(shape),
-        undecided=(undecided(case, picture) | search.undecided).reshape(shape),
-        width=hull_width(picture).reshape(shape),
+        undecided=(undecided(case, picture, width) | search.undecided).reshape(shape),
+        width=width.reshape(shape),
         blame=blame.astype(np.int8).reshape(shape),
     )
 
@@ -211,8 +218,13 @@ def searched(picture: Picture, shown: Shown, among: Bools | None = None) -> Sear
     return search
 
 
-def undecided(case: Case, picture: Picture) -> Bools:
-    """(pixels,) a legal outcome lies more than one lattice step from the reference's, or shows."""
+def undecided(case: Case, picture: Picture, width: Floats) -> Bools:
+    """(pixels,) a legal outcome lies more than one lattice step from the reference's, or shows.
+
+    What a bug makes is nowhere the reference's: of its program, whether one outcome shows beside another.
+    """
+    if picture.model.kind is not Program:
+        return np.asarray((width > 2.0 * BYTE) | (picture.winners.empty & np.isfinite(width)))
     stages, pixels = case.frame.stages, picture.pixels
     looks = picture.all.take(picture.shown(picture.all))
     index, polygon = (stages[name].reshape(-1).astype(np.int64) for name in ("march.hit_index", "raster.patch_id"))

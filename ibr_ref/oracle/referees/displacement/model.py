@@ -82,7 +82,9 @@ class Model:
         polygons = [self.program.polygons(each) for each in quads]
         triangles = [self.program.fanned(each) for each in polygons]
         parts = [
-            fragments_of(self.program, polygons[number], number, self.machine.device)
+            fragments_of(
+                self.program, polygons[number], self.program.unclipped(quads[number]), number, self.machine.device
+            )
             for number, each in enumerate(triangles)
             if each
         ]

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -238,14 +237,11 @@ class Picture:
             return np.asarray((looks.hit_index >= 0) & (looks.depth.low <= limit) & (looks.depth.low < 1.0))
 
 
-_PICTURES: WeakKeyDictionary[Case, Picture] = WeakKeyDictionary()
-
-
 def picture_of(case: Case, device: Device, kind: type[Program] = Program, among: Bools | None = None) -> Picture:
     """Computed once for a case and its last device, for as long as the case lives; a suspect's, or of some pixels, anew."""
     if kind is not Program or among is not None:
         return Picture(Model(case, device, kind), among)
-    known = _PICTURES.get(case)
+    known: Picture | None = case.kept.get("displacement.picture")
     if known is None or known.model.device != device:
-        known = _PICTURES[case] = Picture(Model(case, device))
+        known = case.kept["displacement.picture"] = Picture(Model(case, device))
     return known

@@ -11,6 +11,7 @@ from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.displacement.hits import hits_of, lighted, shades_of
+from ibr_ref.oracle.referees.displacement.image import judge_picture
 from ibr_ref.oracle.referees.displacement.judging import (
     Verdict,
     judge_march,
@@ -60,13 +61,18 @@ class Stages:
 
     def names(self, stage: str) -> tuple[str, ...]:
         """What of a stage was handed in."""
-        if stage == "resolve":
+        if stage in ("resolve", "image"):
             return tuple(name for name in ("depth", "color") if name in self.port.handed)
         return self.port.names(stage)
 
     def judge(self, stage: str, *, clean: bool = True) -> Judgement:
-        """One stage. clean: the geometry before it is right, so that the program's other fragments are the port's."""
+        """One stage, or "image".
+
+        clean: the geometry before it is right, so that the program's other fragments are the port's.
+        """
         port = self.port
+        if stage == "image":
+            return judge_picture(port.picture, port.handed)
         if stage == "vertex":
             return judge_vertex(port)
         if stage == "raster":

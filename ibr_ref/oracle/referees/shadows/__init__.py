@@ -2,45 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow, up_to
-from ibr_ref.oracle.referees.shadows import replay_maps, replay_picture
+from ibr_ref.oracle.judgement import Explanation, Handed, Judgement, Parameter, TraceRow, up_to
 from ibr_ref.oracle.referees.shadows.image import Accepted
 from ibr_ref.oracle.referees.shadows.inputs import HANDED_OVER, Inputs
 from ibr_ref.oracle.referees.shadows.parameters import parameters
+from ibr_ref.oracle.referees.shadows.stages import judged, judgements
 from ibr_ref.oracle.referees.shadows.trace import trace
 
-_MADE = (replay_maps.positions, replay_maps.images, replay_maps.controls)
+_MADE = ("maps.positions", "maps.image", "controls")
 """Of what the case hands over."""
-_JUDGES = (
-    replay_maps.positions,
-    replay_maps.depths,
-    replay_maps.images,
-    replay_maps.controls,
-    replay_maps.spots,
-    replay_maps.shares,
-    replay_maps.row_grids,
-    replay_maps.rows,
-    replay_maps.grids,
-    replay_maps.warped,
-    replay_picture.depth,
-    replay_picture.projected,
-    replay_picture.sums,
-    replay_picture.colors,
-)
-
-
-def _with_either_maps(judge: Callable[[Inputs], Judgement | None], given: Inputs) -> Judgement | None:
-    """Fed with the port's own nine maps, or else with those that the case hands over."""
-    judgement = judge(given)
-    if judgement is None or not judgement.wrong.any() or not {*HANDED_OVER} & {*judgement.replayed}:
-        return judgement
-    assert given.as_the_case is not None
-    other = judge(given.as_the_case)
-    return judgement if other is None or judgement.wrong.sum() <= other.wrong.sum() else other
 
 
 class ShadowsReferee:
@@ -57,9 +31,7 @@ class ShadowsReferee:
         self, case: Case, device: Device, handed: Handed, *, to_first_wrong: bool = False
     ) -> list[Judgement]:
         """In order; a stage of several kinds of elements (cells, grids, texels) has a judgement for each."""
-        given = Inputs(case, device, handed, self._of(case, device))
-        found = (_with_either_maps(judge, given) for judge in _JUDGES)
-        return up_to((judgement for judgement in found if judgement is not None), first_wrong=to_first_wrong)
+        return up_to(judgements(self._given(case, device, handed)), first_wrong=to_first_wrong)
 
     def judge_image(self, case: Case, device: Device, handed: Handed) -> Judgement:
         """The picture from the case alone, with the maps that it hands over, or with the port's own if these are legal."""
@@ -71,7 +43,7 @@ class ShadowsReferee:
         if not own or not judgement.wrong.any() or case.params.method == "direct":
             return judgement
         given = Inputs(case, device, own, alone)
-        if any(made is not None and made.wrong.any() for made in (judge(given) for judge in _MADE)):
+        if any(made is not None and made.wrong.any() for made in (judged(given, part) for part in _MADE)):
             return judgement
         other = Accepted.of(given).judge(handed)
         return judgement if judgement.wrong.sum() <= other.wrong.sum() else other
@@ -84,7 +56,25 @@ class ShadowsReferee:
 
     def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
         """The computation of one element; stage: a stage or an array, index: that in its judgement."""
-        return trace(Inputs(case, device, handed, self._of(case, device)), stage, index)
+        return trace(self._given(case, device, handed), stage, index)
+
+    def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
+        """The known bugs that explain a wrong stage."""
+        from ibr_ref.oracle.referees.shadows.cause import causes  # with all known bugs: what passes needs none
+
+        return causes(self._given(case, device, handed, wrong), handed, wrong)
+
+    def recognizes(self, case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
+        """Whether the known bug of a name explains a wrong stage."""
+        from ibr_ref.oracle.referees.shadows.cause import recognizes
+
+        return recognizes(self._given(case, device, handed, wrong), wrong, cause)
+
+    def _given(self, case: Case, device: Device, handed: Handed, wrong: Judgement | None = None) -> Inputs:
+        """wrong: of a picture by itself nothing of the port is fed to anything."""
+        if wrong is not None and wrong.stage == "image":
+            return Inputs(case, device, {}, self._of(case, device), picture=handed)
+        return Inputs(case, device, handed, self._of(case, device))
 
     def parameters(self, case: Case) -> list[Parameter]:
         """What moves the image."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.referees.shadows import resolve
 from ibr_ref.oracle.referees.shadows.accumulate import accumulated
 from ibr_ref.oracle.referees.shadows.maps import VISIBLE
+from ibr_ref.oracle.referees.shadows.model import Model
 from ibr_ref.oracle.referees.shadows.project import Shadow
 from ibr_ref.oracle.referees.shadows.surface import Seen
 
@@ -32,13 +32,12 @@ class Branches:
     """(n,) fragments with more decisions than are followed."""
 
 
-def branches(case: Any, seen: Seen, shadows: Sequence[Shadow]) -> Branches:
+def branches(model: Model, seen: Seen, shadows: Sequence[Shadow]) -> Branches:
     """Every combination of the samples' outcomes, and of the sides that the eye may be on."""
     device, count = seen.depth.device, len(seen.pixel)
-    unorm8 = case.params.accumulation == "unorm8"
-    base = accumulated([s.first for s in shadows], unorm8)
+    base = accumulated(model, [s.first for s in shadows])
     open_ = np.stack([s.open for s in shadows], axis=1)
-    number = open_.sum(axis=1)
+    number, lost = open_.sum(axis=1), np.logical_or.reduce([s.spoiled for s in shadows])
     fragments, values, errors = [np.arange(count)], [base.value], [np.broadcast_to(base.error, base.value.shape)]
     for m in range(1, MOST_OPEN + 1):
         mine = np.flatnonzero(number == m)
@@ -46,7 +45,7 @@ def branches(case: Any, seen: Seen, shadows: Sequence[Shadow]) -> Branches:
             continue
         which = np.nonzero(open_[mine])[1].reshape(-1, m)
         for taken in list(product((False, True), repeat=m))[1:]:
-            total = accumulated(_choice(shadows, mine, which, taken), unorm8)
+            total = accumulated(model, _choice(shadows, mine, which, taken))
             fragments.append(mine)
             values.append(total.value)
             errors.append(total.error)
@@ -55,7 +54,7 @@ def branches(case: Any, seen: Seen, shadows: Sequence[Shadow]) -> Branches:
     both = np.flatnonzero(seen.edge_on[fragment])
     turned = np.r_[np.zeros(len(fragment), np.bool_), np.ones(len(both), np.bool_)]
     every = np.r_[np.arange(len(fragment)), both]
-    return Branches(fragment[every], summed[every], turned, number > MOST_OPEN)
+    return Branches(fragment[every], summed[every], turned, (number > MOST_OPEN) | lost)
 
 
 def _choice(shadows: Sequence[Shadow], mine: Ints, which: Ints, taken: Sequence[bool]) -> list[Bounded]:
@@ -76,12 +75,12 @@ def in_shadow(seen: Seen, shadow: Bounded) -> Branches:
     return Branches(every, shadow[every], turned, np.zeros(count, np.bool_))
 
 
-def spread(case: Any, seen: Seen, found: Branches, color: list[Bounded]) -> tuple[Bools, Floats]:
+def spread(model: Model, seen: Seen, found: Branches, color: list[Bounded]) -> tuple[Bools, Floats]:
     """(H W,) whether another outcome shows, and the width of the widest outcome."""
     pixels = len(seen.empty)
     count, pixel = len(seen.pixel), seen.pixel[found.fragment]
     undecided, widths = np.zeros(pixels, np.bool_), np.zeros(pixels)
-    nothing = resolve.background(case.scene, seen)
+    nothing = resolve.background(model)
     for channel, empty in zip(color, nothing, strict=True):
         error = np.broadcast_to(channel.error, channel.value.shape)
         first_low, first_high = (np.full(pixels, float(end[0])) for end in (empty.low, empty.high))

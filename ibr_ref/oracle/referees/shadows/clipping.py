@@ -7,7 +7,7 @@ that a corner may slide is only told where the new edge, along the plane, can be
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,8 +17,9 @@ from ibr_ref.array_types import Floats, Ints
 from ibr_ref.oracle.accept import borders
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import RASTER
+from ibr_ref.oracle.accept.whole import Whole, whole
 from ibr_ref.oracle.device import UNIT, Device
-from ibr_ref.oracle.referees.shadows.transform import window
+from ibr_ref.oracle.programs.shadows.raster import FAR, NEAR
 
 CROSSING_ROUNDINGS = 5.0
 """Of a (1 - t) + b t, each relative to the larger of a and b: 1 - t, two products, a sum; one of the result."""
@@ -53,49 +54,67 @@ class Cut:
     """One number for corners that are one point."""
     source: Ints
     """(T,) growing: the triangle before clipping."""
-    borders: list[borders.Cut | None]
-    """Of each triangle: what the picture's borders leave of its polygon, where the device may cut it there."""
+    setups: list[list[borders.Cut | Whole]]
+    """Of each triangle, what else its planes may be set up over: what the picture's borders leave of its polygon, where
+    the device may cut it there; the triangle before it was clipped, where it may be set up so."""
     wild: bool
     """Of some triangle it is not certain whether or where a plane cuts it: it may cover anything."""
 
 
-def clipped(numbers: Sequence[Bounded], triangles: NDArray[np.integer], names: Ints, width: int, height: int) -> Cut:
+Window = Callable[[Sequence[Bounded]], list[Bounded]]
+"""Window x, y and depth of clip coordinates x, y, z, w."""
+
+
+def clipped(
+    numbers: Sequence[Bounded],
+    triangles: NDArray[np.integer],
+    names: Ints,
+    size: tuple[int, int],
+    window: Window,
+    planes: Sequence[int] = (NEAR, FAR),
+) -> Cut:
     """Clip triangles (T, 3) of vertices (V,) whose numbers are x, y, z, w and attributes; names (V,) of points."""
     device = numbers[0].device
     value = np.stack([n.value for n in numbers], axis=-1)[triangles]
     error = np.stack([np.broadcast_to(n.error, n.value.shape) for n in numbers], axis=-1)[triangles]
     near, far, slack = value[..., 2], value[..., 3] - value[..., 2], error[..., 2] + error[..., 3]
-    whole = ((near > error[..., 2]) & (far > slack)).all(axis=1)
+    if NEAR not in planes:
+        near = np.full(near.shape, np.inf)
+    kept = ((near > error[..., 2]) & (far > slack)).all(axis=1)
     gone = (near < -error[..., 2]).all(axis=1) | (far < -slack).all(axis=1)
     unclear = ((np.abs(near) <= error[..., 2]) | (np.abs(far) <= slack)).any(axis=1) & ~gone
     fresh = _Names(int(names.max(initial=0)) + 1)
     pieces: list[tuple[int, tuple[Corner, Corner, Corner]]] = []
     wild = bool(unclear.any())
-    for t in np.flatnonzero(~whole & ~gone & ~unclear):
+    for t in np.flatnonzero(~kept & ~gone & ~unclear):
         still = np.zeros(value.shape[2])
         polygon = [Corner(value[t, i], error[t, i], still, int(names[triangles[t, i]])) for i in range(3)]
-        for plane in (0, 1):
+        for plane in planes:
             polygon = _cut(polygon, plane, fresh, device)
-        if _slides_into_view(polygon, width, height, device):
+        if _slides_into_view(polygon, size, window, device):
             polygon = [replace(c, error=c.error + c.slide, slide=still) for c in polygon]
             wild |= not all(np.isfinite(c.error).all() for c in polygon)
         pieces += [(int(t), fan) for fan in _fan(polygon)]
-    source = np.concatenate([np.flatnonzero(whole), np.array([t for t, _ in pieces], np.int64)])
+    source = np.concatenate([np.flatnonzero(kept), np.array([t for t, _ in pieces], np.int64)])
     order = np.argsort(source, kind="stable")
     shape = (-1, 3, value.shape[2])
     joined = [
-        np.concatenate([a[whole], np.reshape([[getattr(c, n) for c in fan] for _, fan in pieces], shape)])[order]
+        np.concatenate([a[kept], np.reshape([[getattr(c, n) for c in fan] for _, fan in pieces], shape)])[order]
         for a, n in ((value, "value"), (error, "error"), (np.zeros_like(value), "slide"))
     ]
     cut_names = np.reshape([[c.name for c in fan] for _, fan in pieces], (-1, 3)).astype(np.int64)
-    named = np.concatenate([names[triangles[whole]], cut_names])[order]
+    named = np.concatenate([names[triangles[kept]], cut_names])[order]
     parts = [Bounded(joined[0][..., k], joined[1][..., k], device) for k in range(shape[2])]
-    x, y, z = window(parts[:4], width, height)
+    x, y, z = window(parts[:4])
     # A corner that slides is snapped from elsewhere on its edge: it leaves the edge by up to half a step either way.
     off = np.where(joined[2].any(axis=2), 1.0 / RASTER, 0.0)
-    cuts = _borders(joined[0], joined[1], source[order], (width, height), device)
+    cuts = _borders(joined[0], joined[1], source[order], size, device)
     off += np.array([[0.0 if each is None else each.moved] for each in cuts]).reshape(-1, 1)
-    return Cut(x.widened(off), y.widened(off), z, parts[3], parts[4:], named, source[order], cuts, wild)
+    own = {int(t): whole(value[t, :, :4], error[t, :, :4], size, device) for t, _ in pieces if device.whole}
+    setups = [
+        [s for s in (cut, own.get(t)) if s is not None] for t, cut in zip(source[order].tolist(), cuts, strict=True)
+    ]
+    return Cut(x.widened(off), y.widened(off), z, parts[3], parts[4:], named, source[order], setups, wild)
 
 
 def _borders(
@@ -159,13 +178,13 @@ def _crossing(inside: Corner, outside: Corner, plane: int, fresh: _Names, device
     return Corner(value, error, slide, fresh.of(inside.name, outside.name, plane), plane)
 
 
-def _slides_into_view(polygon: list[Corner], width: int, height: int, device: Device) -> bool:
+def _slides_into_view(polygon: list[Corner], size: tuple[int, int], window: Window, device: Device) -> bool:
     """Whether an edge along a plane may cross the picture, if its corners slide."""
     boxes = {}
     for i, corner in enumerate(polygon):
         if corner.plane >= 0:
             moved = [Bounded(corner.value[k], corner.error[k] + corner.slide[k], device) for k in range(4)]
-            boxes[i] = window(moved, width, height)[:2]
+            boxes[i] = window(moved)[:2]
     for i, (x, y) in boxes.items():
         j = (i + 1) % len(polygon)
         if j not in boxes or polygon[i].plane != polygon[j].plane:
@@ -173,7 +192,7 @@ def _slides_into_view(polygon: list[Corner], width: int, height: int, device: De
         other_x, other_y = boxes[j]
         beside = [
             max(a.high, b.high) < 0.0 or min(a.low, b.low) > n
-            for a, b, n in ((x, other_x, float(width)), (y, other_y, float(height)))
+            for a, b, n in ((x, other_x, float(size[0])), (y, other_y, float(size[1])))
         ]
         if not any(beside):
             return True

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ibr_ref.oracle.referees.shadows import resolve
 from ibr_ref.oracle.referees.shadows.branches import Branches, branches, spread
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.judging import judgement
+from ibr_ref.oracle.referees.shadows.model import Model
 from ibr_ref.oracle.referees.shadows.project import shadow
 from ibr_ref.oracle.referees.shadows.surface import Seen
 
@@ -22,7 +22,7 @@ from ibr_ref.oracle.referees.shadows.surface import Seen
 class Accepted:
     """Everything that a picture may show."""
 
-    case: Any
+    model: Model
     seen: Seen
     outcomes: Branches
     color: list[Bounded]
@@ -33,23 +33,24 @@ class Accepted:
     @classmethod
     def of(cls, alone: Inputs) -> Accepted:
         """alone: a case with nothing handed in."""
-        case, seen = alone.case, alone.seen
-        places = enumerate(alone.coordinates)
-        outcomes = branches(case, seen, [shadow(case, alone.map(i), at, seen.caster) for i, at in places])
-        color = resolve.colors(case.scene, seen, outcomes.fragment, outcomes.turned, outcomes.shadow)
-        return cls(case, seen, outcomes, color, *spread(case, seen, outcomes, color))
+        model, seen = alone.model, alone.seen
+        places = [alone.coordinate(i) for i in range(alone.count)]
+        outcomes = branches(model, seen, [shadow(model, alone.map(i), at, seen.caster) for i, at in enumerate(places)])
+        color = resolve.colors(model, seen, outcomes.fragment, outcomes.turned, outcomes.shadow)
+        return cls(model, seen, outcomes, color, *spread(model, seen, outcomes, color))
 
     def judge(self, given: Handed) -> Judgement:
         """Depth and colour: each by itself, and one outcome for both."""
-        seen, scene, pixel = self.seen, self.case.scene, self.seen.pixel[self.outcomes.fragment]
+        seen, model, pixel = self.seen, self.model, self.seen.pixel[self.outcomes.fragment]
         shown, depth = (None if name not in given else np.asarray(given[name]) for name in ("color", "depth"))
         legal, nothing = {}, {}
         if depth is not None:
             legal["depth"] = seen.depth[self.outcomes.fragment].allows(depth.reshape(-1)[pixel])
-            nothing["depth"] = resolve.allows_nothing(scene, seen, None, depth)
+            nothing["depth"] = resolve.allows_nothing(model, seen, None, depth)
         if shown is not None:
-            legal["color"] = resolve.allows(self.color, shown.reshape(-1, 3)[pixel])
-            nothing["color"] = resolve.allows_nothing(scene, seen, shown, None)
+            read = resolve.as_read(model, seen, shown)
+            legal["color"] = resolve.allows(self.color, read[pixel])
+            nothing["color"] = resolve.allows_nothing(model, seen, read, None)
         crowded = np.zeros(len(seen.empty), np.bool_)
         crowded[seen.pixel[self.outcomes.crowded]] = True
         every = np.logical_and.reduce(list(legal.values())), np.logical_and.reduce(list(nothing.values()))

@@ -3,26 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ibr_ref.array_types import Floats
-from ibr_ref.oracle.accept.bounded import Bounded, exact, lerp, stored, uploaded
+from ibr_ref.array_types import Bools, Floats
+from ibr_ref.oracle.accept.bounded import exact, stored
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
+from ibr_ref.oracle.programs.shadows.lights import Lights
+from ibr_ref.oracle.programs.shadows.maps import Maps
+from ibr_ref.oracle.programs.shadows.port import Port
+from ibr_ref.oracle.programs.shadows.surface import Picture
+from ibr_ref.oracle.programs.shadows.warp import Warp
+from ibr_ref.oracle.referees.outcomes import stored as stored_number
 from ibr_ref.oracle.referees.shadows import places
+from ibr_ref.oracle.referees.shadows.device import model_of
 from ibr_ref.oracle.referees.shadows.maps import Map, rendered
+from ibr_ref.oracle.referees.shadows.model import Model
 from ibr_ref.oracle.referees.shadows.places import Place
 from ibr_ref.oracle.referees.shadows.project import Coordinate, coordinate
 from ibr_ref.oracle.referees.shadows.surface import Seen, see
-from ibr_ref.oracle.referees.shadows.transform import Lens
-from ibr_ref.oracle.referees.shadows.warp import Source, between, pair, place_of, warped
 
 HANDED_OVER = ("maps.positions", "maps.image")
 """What the case hands over and a port may also make itself: with either it may go on, and for all of a stage with one."""
+SEEN = {*vars(Picture), "surface_raster", "caster_vertices", "clip_coordinates", "applied", "by_product", "product"}
+SEEN |= {"light_centre", "cosine", "toward_eye", "toward_light", "turned", "lambert"}
+"""What of a program says what the camera sees, and in which light."""
+MAPPED = {*vars(Maps), *vars(Warp), *vars(Lights)} - {"shadow_sampler", "surface_raster", "on"}
+"""What of a program says what is projected."""
+Spot = tuple[Place, Place]
+"""Along x and along y."""
 
 
 @dataclass(eq=False)
@@ -34,6 +48,27 @@ class Inputs:
     handed: Handed = field(default_factory=dict)
     alone: Inputs | None = None
     """The same with nothing handed in: what does not depend on that is made there, once for all submissions."""
+    kind: type[Port] = Port
+    """The program: the right one, or one with a known bug."""
+    among: Bools | None = None
+    """(H W,) the pixels of the picture that are looked at; None: all."""
+    right: Inputs | None = None
+    """By the right program: a program with a bug shares what that does not change."""
+    picture: Handed = field(default_factory=dict)
+    """What is compared in the end, of a picture that is judged by itself."""
+
+    @cached_property
+    def model(self) -> Model:
+        """The program on the device."""
+        if self.alone is not None and self.alone.kind is self.kind:
+            return self.alone.model
+        return model_of(self.case, self.device, self.kind)
+
+    def refuted(self, right: Bools) -> bool:
+        """Whether a known bug is contradicted already, and need not be looked at any further."""
+        if self.right is None:
+            return False
+        return not right.all() if self.among is None or right.size != self.among.size else not right[self.among].all()
 
     @property
     def direct(self) -> bool:
@@ -43,36 +78,37 @@ class Inputs:
     @property
     def count(self) -> int:
         """Light samples."""
-        return places.count(self.case)
-
-    @cached_property
-    def samples(self) -> list[places.Sample]:
-        """The light's samples."""
-        return places.samples(self.case, self.device)
-
-    @cached_property
-    def centre_lens(self) -> Lens:
-        """What the light's centre sees: the nine maps."""
-        light = self.case.scene.light
-        return Lens.of(light.camera(int(self.case.params.map_size)), np.abs(light.arrays[0]))
-
-    @cached_property
-    def lenses(self) -> list[Lens]:
-        """What each sample sees."""
-        size, light = int(self.case.params.map_size), self.case.scene.light
-        return [Lens.of(light.camera(size, s.position), s.sizes) for s in self.samples]
+        given = self.case.params.light_samples
+        return len(given) if isinstance(given, np.ndarray) else int(given)
 
     @cached_property
     def seen(self) -> Seen:
         """What the camera may see; no stage array holds it."""
-        return see(self.case, self.device) if self.alone is None else self.alone.seen
+        if self.alone is None or (self.kind is not self.alone.kind and self.model.changes(SEEN)):
+            found = see(self.model)
+        else:
+            found = self.alone.seen
+        return found if self.among is None else found.among(self.among)
+
+    def coordinate(self, sample: int) -> Coordinate:
+        """Of what the camera may see, on the map of a sample."""
+        if sample not in self._coordinates:
+            shared = self.alone is not None and self.alone.kind is self.kind and self.among is None
+            found = self.alone.coordinate(sample) if shared and self.alone else None
+            self._coordinates[sample] = found or coordinate(self.model, sample, self.seen.world)
+        return self._coordinates[sample]
 
     @cached_property
-    def coordinates(self) -> list[Coordinate]:
-        """Of what the camera may see, on the map of each sample."""
-        if self.alone is not None:
-            return self.alone.coordinates
-        return [coordinate(lens, self.seen.world) for lens in self.lenses]
+    def _coordinates(self) -> dict[int, Coordinate]:
+        return {}
+
+    @cached_property
+    def exact_arrays(self) -> dict[str, Any]:
+        """What the program makes of the case in exact arithmetic."""
+        if self.kind is Port:
+            return dict(self.case.frame.stages)
+        with np.errstate(all="ignore"):
+            return dict(self.model.exact.render())
 
     def own(self, name: str, *, sampled: bool = True) -> Floats | None:
         """A port's array in float64, with an axis of samples first; None if it was not handed in."""
@@ -82,8 +118,8 @@ class Inputs:
         return array[None] if sampled and self.count == 1 else array
 
     def reference(self, name: str, *, sampled: bool = True) -> Floats:
-        """The reference's, the same way."""
-        array = np.asarray(self.case.frame.stages[name]).astype(np.float64)
+        """The program's in exact arithmetic, the same way."""
+        array = np.asarray(self.exact_arrays[name]).astype(np.float64)
         return array[None] if sampled and self.count == 1 else array
 
     def fed(self, name: str, *, sampled: bool = True) -> Floats | None:
@@ -101,55 +137,66 @@ class Inputs:
     def as_the_case(self) -> Inputs | None:
         """The same with the nine maps that the case hands over in place of the port's own; None where it has none."""
         others = {name: array for name, array in self.handed.items() if name not in HANDED_OVER}
-        return None if len(others) == len(self.handed) else Inputs(self.case, self.device, others, self.alone)
+        if len(others) == len(self.handed):
+            return None
+        right = None if self.right is None else self.right.as_the_case
+        return replace(self, handed=others, right=right)
+
+    def _stored(self, own: Floats, legal: Any = None) -> Number:
+        return stored_number(self.model.machine, own, legal)
 
     @cached_property
-    def lines(self) -> tuple[Bounded, Bounded]:
+    def lines(self) -> list[Number]:
         """The three x and the three y of the nine maps: the port's own, or as they are given."""
         own = self.fed("maps.positions", sampled=False)
         if own is not None and (np.diff(own[0, :, 0]) > 0.0).all() and (np.diff(own[:, 0, 1]) > 0.0).all():
-            positions = stored(own, self.device)
-        else:
-            positions = uploaded(self.reference("maps.positions", sampled=False), self.device)
-        return positions[0, :, 0], positions[:, 0, 1]
+            positions = self._stored(own)
+            return [positions[0, :, 0], positions[:, 0, 1]]
+        return list(self.model.program.lines())
 
     @cached_property
-    def given_controls(self) -> Bounded:
+    def given_controls(self) -> Number:
         """(3, 3, R, C, 2) as they are given."""
-        return uploaded(self.reference("controls", sampled=False), self.device)
+        return self.model.machine.of(self.model.program.controls())
 
     @cached_property
-    def controls(self) -> Bounded:
+    def controls(self) -> Number:
         """(3, 3, R, C, 2): the port's own, or as they are given."""
         own = self.fed("controls", sampled=False)
-        if own is not None:
-            return stored(own, self.device, self.given_controls)
-        return self.given_controls
+        return self.given_controls if own is None else self._stored(own, self.given_controls)
 
     @cached_property
-    def images(self) -> Bounded:
+    def images(self) -> Number:
         """(3, 3, S, S): the port's own, or as they are given."""
         own = self.fed("maps.image", sampled=False)
-        if own is not None:
-            return stored(own, self.device)
-        return uploaded(self.reference("maps.image", sampled=False), self.device)
+        return self.model.machine.of(self.model.program.images()) if own is None else self._stored(own)
 
-    def offset_seen(self, sample: int) -> list[Bounded]:
-        """x and y of the object as a sample sees it."""
-        moves = self.samples[sample].displacement
-        return [o - d for o, d in zip(places.offset(self.case, self.device), moves, strict=True)]
+    @cached_property
+    def displacements(self) -> list[Number]:
+        """(2,) of each sample from the light's centre, along the axes."""
+        return [self.model.program.displacement(place) for place in self.model.program.places]
 
-    def places(self, sample: int) -> list[tuple[Place, Place]]:
+    def offset_seen(self, sample: int) -> Number:
+        """(2,) of the object as a sample sees it."""
+        program = self.model.program
+        return self.model.machine.of(program.place_of_object(program.places[sample]))
+
+    def places(self, sample: int) -> list[Spot]:
         """The cells and fractions along x and y that a sample may find, the likeliest first."""
-        own_cell, own_fraction = self.own("warp.cell"), self.fed("warp.fraction")
-        if own_cell is not None and not np.isin(own_cell[sample], (0.0, 1.0)).all():
-            own_cell = None
-        return place_of(
-            self.lines,
-            self.offset_seen(sample),
-            None if own_cell is None else own_cell[sample].astype(np.int64),
-            None if own_fraction is None else own_fraction[sample],
-        )
+        cell, fraction = self.own("warp.cell"), self.fed("warp.fraction")
+        if cell is not None and not np.isin(cell[sample], (0.0, 1.0)).all():
+            cell = None
+        axes: list[list[Place]] = []
+        for k, (line, at) in enumerate(zip(self.lines, self.offset_seen(sample), strict=True)):
+            if cell is None:
+                found = places.located(self.model, line, at)
+            else:
+                own = int(cell[sample, k])
+                found = [Place(own, places.fraction_in(self.model, line, at, own))]
+            if fraction is not None:
+                found = [Place(p.cell, stored(fraction[sample, k], self.device, p.fraction)) for p in found]
+            axes.append(found)
+        return [(x, y) for x in axes[0] for y in axes[1]]
 
     @property
     def projective(self) -> bool:
@@ -157,106 +204,101 @@ class Inputs:
         return bool(not self.direct and self.case.params.interpolation == "projective")
 
     @cached_property
-    def depths(self) -> Bounded:
+    def depths(self) -> Number:
         """(3, 3) of the caster in the nine maps: the port's own, or made at the maps' lines."""
         own = self.fed("maps.depths", sampled=False)
-        return self.made_depths if own is None else stored(own, self.device)
+        return self.made_depths if own is None else self._stored(own)
 
     @cached_property
-    def made_depths(self) -> Bounded:
+    def made_depths(self) -> Number:
         """At the maps' lines."""
-        return places.depths(self.case, self.centre_lens, self.lines)
+        return self.model.machine.of(self.model.program.caster_depths(self.lines))
 
-    def shares(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
+    def _cell(self, spot: Spot) -> Any:
+        return np.array([place.cell for place in spot], np.int32)
+
+    def shares(self, sample: int, spot: Spot) -> list[Number]:
         """Of the next map in the upper row and in the lower one, and of the lower row."""
         own = self.fed("warp.shares") if self.projective else None
-        return self.made_shares(place) if own is None else [stored(n, self.device) for n in own[sample]]
+        return self.made_shares(spot) if own is None else [self._stored(n) for n in own[sample]]
 
-    def made_shares(self, place: tuple[Place, Place]) -> list[Bounded]:
+    def made_shares(self, spot: Spot) -> list[Number]:
         """From the fractions, and the depths if they matter."""
-        x, y = place
-        if not self.projective:
-            return [x.fraction, x.fraction, y.fraction]
-        corners = [[self.depths[y.cell + k, x.cell + n] for n in range(2)] for k in range(2)]
-        ends = [lerp(row[0], row[1], x.fraction) for row in corners]
-        return [
-            places.paced(x.fraction, *corners[0]),
-            places.paced(x.fraction, *corners[1]),
-            places.paced(y.fraction, *ends),
-        ]
+        fraction = [self.model.number(place.fraction) for place in spot]
+        return list(self.model.program.shares(self._cell(spot), fraction, self.depths if self.projective else None))
 
-    def row_grids(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
+    def grids(self, spot: Spot) -> list[Number]:
+        """Four (R, C, 2) of the cell's maps."""
+        return list(self.model.program.corners(self.controls, self._cell(spot)))
+
+    def maps(self, spot: Spot) -> list[Number]:
+        """Four (S, S)."""
+        return list(self.model.program.corners(self.images, self._cell(spot)))
+
+    def row_grids(self, sample: int, spot: Spot) -> list[Number]:
         """Two (R, C, 2)."""
         own = self.fed("warp.row_grids")
-        if own is not None:
-            return [stored(grid, self.device) for grid in own[sample]]
-        return self.made_row_grids(sample, place)
+        return self.made_row_grids(sample, spot) if own is None else [self._stored(grid) for grid in own[sample]]
 
-    def made_row_grids(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
+    def made_row_grids(self, sample: int, spot: Spot) -> list[Number]:
         """From the controls."""
-        x, y = place
-        return [
-            between(self.controls[y.cell + k, x.cell], self.controls[y.cell + k, x.cell + 1], share)
-            for k, share in enumerate(self.shares(sample, place)[:2])
-        ]
+        return list(self.model.program.row_grids(self.grids(spot), self.shares(sample, spot)))
 
-    def grid(self, sample: int, place: tuple[Place, Place]) -> Bounded:
+    def grid(self, sample: int, spot: Spot) -> Number:
         """(R, C, 2)."""
         own = self.fed("warp.grid")
-        if own is not None:
-            return stored(own[sample], self.device)
-        return self.made_grid(sample, place)
+        return self.made_grid(sample, spot) if own is None else self._stored(own[sample])
 
-    def made_grid(self, sample: int, place: tuple[Place, Place]) -> Bounded:
+    def made_grid(self, sample: int, spot: Spot) -> Number:
         """From the row grids."""
-        first, second = self.row_grids(sample, place)
-        return between(first, second, self.shares(sample, place)[2])
+        first, second = self.row_grids(sample, spot)
+        grid = self.model.program.final_grid(first, second, self.shares(sample, spot)[2])
+        return self.model.machine.of(grid)
 
-    def rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
+    def rows(self, sample: int, spot: Spot) -> list[Number]:
         """Two (S, S)."""
         own = self.fed("warp.rows")
-        if own is not None:
-            return [stored(row, self.device) for row in own[sample]]
-        return self.made_rows(sample, place)
+        return self.made_rows(sample, spot) if own is None else [self._stored(row) for row in own[sample]]
 
-    def made_rows(self, sample: int, place: tuple[Place, Place]) -> list[Bounded]:
+    def made_rows(self, sample: int, spot: Spot) -> list[Number]:
         """From the nine maps."""
-        targets, shares = self.row_grids(sample, place), self.shares(sample, place)
-        return [
-            pair(self.sources(place, k), shares[k], target, self.nearest, self.nothing)
-            for k, target in enumerate(targets)
-        ]
+        targets, shares = self.row_grids(sample, spot), self.shares(sample, spot)
+        return list(self.model.program.rows(self.maps(spot), self.grids(spot), targets, shares))
 
-    def sources(self, place: tuple[Place, Place], row: int) -> list[Source]:
-        """The two maps of a row."""
-        x, y = place
-        return [Source(self.images[y.cell + row, x.cell + n], self.controls[y.cell + row, x.cell + n]) for n in (0, 1)]
-
-    @property
-    def nearest(self) -> bool:
-        """The policy of three warps."""
-        return bool(self.case.params.policy == "nearest")
-
-    @property
-    def nothing(self) -> float:
-        """A texel without anything."""
-        return 1.0 if self.case.params.content == "depth" else 0.0
-
-    def made_image(self, sample: int, place: tuple[Place, Place]) -> Bounded:
+    def made_image(self, sample: int, spot: Spot) -> Number:
         """(S, S) from the rows."""
-        grids, rows = self.row_grids(sample, place), self.rows(sample, place)
-        sources = [Source(row, grid) for row, grid in zip(rows, grids, strict=True)]
-        return pair(sources, self.shares(sample, place)[2], self.grid(sample, place), self.nearest, self.nothing)
+        grids, rows = self.row_grids(sample, spot), self.rows(sample, spot)
+        image = self.model.program.finished(rows, grids, self.grid(sample, spot), self.shares(sample, spot))
+        return self.model.machine.of(image)
 
     def map(self, sample: int) -> Map:
         """What is projected for a sample."""
+        if sample not in self._maps:
+            shared = self.right is not None and ("warp.image" in self.handed or not self.model.changes(MAPPED))
+            self._maps[sample] = self.right.map(sample) if shared and self.right else self._map(sample)
+        return self._maps[sample]
+
+    @cached_property
+    def _maps(self) -> dict[int, Map]:
+        return {}
+
+    def _map(self, sample: int) -> Map:
         own = self.own("warp.image")
         if own is not None:
             bad = ~np.isfinite(own[sample])
             texels = np.where(bad, self.reference("warp.image")[sample], own[sample])
             # A map that is rendered was cleared to 1; a warped one holds mixes, rounded to 1 or not.
             return Map.of(stored(texels, self.device, exact(1.0, self.device) if self.direct else None), bad)
+        if self.direct and self.model.program.right("direct_map", "caster_map", "coverage", "share", "depths"):
+            program = self.model.program
+            clip, raster = program.direct_clip(program.places[sample]), program.direct_raster(self.model.machine)
+            return rendered(self.model, raster, clip, self.reference("warp.image")[sample])
+        return Map.of(self.model.bounded(self.made_map(sample)))
+
+    def made_map(self, sample: int) -> Number:
+        """(S, S) whichever of the legal places a sample finds."""
         if self.direct:
-            at = places.offset(self.case, self.device)
-            return rendered(self.case, self.lenses[sample], at, self.reference("warp.image")[sample])
-        return Map.of(warped([self.made_image(sample, place) for place in self.places(sample)]))
+            return self.model.machine.of(self.model.program.direct_map(self.model.program.places[sample]))
+        first, *others = (self.made_image(sample, spot) for spot in self.places(sample))
+        found: Number = self.model.machine.either(first, *(lambda x=x: x for x in others))
+        return found

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from ibr_ref.array_types import Bools, Floats
-from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.judgement import Judgement
 
 
@@ -39,9 +38,3 @@ def judgement(
         blame=blame,
         part=arrays[0] if stage in ("maps", "warp") else "",
     )
-
-
-def stacked(parts: Sequence[Bounded]) -> Bounded:
-    """Along a new first axis."""
-    error = [np.broadcast_to(p.error, p.value.shape) for p in parts]
-    return Bounded(np.stack([p.value for p in parts]), np.stack(error), parts[0].device)

@@ -10,13 +10,13 @@ import numpy as np
 
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
-from ibr_ref.oracle.accept.coverage import Fragments, fragments
-from ibr_ref.oracle.accept.seams import owners
-from ibr_ref.oracle.accept.winners import Winners, winners
+from ibr_ref.oracle.accept.coverage import Fragments
+from ibr_ref.oracle.accept.winners import Winners
 from ibr_ref.oracle.device import UNIT, Device
-from ibr_ref.oracle.referees.shadows.clipping import clipped
-from ibr_ref.oracle.referees.shadows.transform import Lens, placed
-from ibr_ref.oracle.referees.shadows.varyings import Triangles, linear
+from ibr_ref.oracle.programs.shadows.raster import Raster
+from ibr_ref.oracle.referees.shadows.drawing import Pass, names_of, pixels_of
+from ibr_ref.oracle.referees.shadows.model import Model
+from ibr_ref.oracle.referees.shadows.transform import centered
 
 VISIBLE = 1.0 / 255.0
 """A step of what is shown: alternatives that differ by less are not counted as undecided."""
@@ -55,30 +55,26 @@ class Drawn:
     """A plane may or may not cut it: anything is legal."""
 
 
-def names_of(points: Sequence[Bounded]) -> Ints:
-    """(V,) one number for vertices that are one point."""
-    return np.unique(np.stack([p.value for p in points], axis=1), axis=0, return_inverse=True)[1].reshape(-1)
-
-
-def drawn(case: Any, lens: Lens, offset: Sequence[Bounded], size: int) -> Drawn:
-    """The caster at an offset, in a window of size x size."""
-    points = placed(case.scene, offset)
-    triangles = np.asarray(case.scene.caster.triangles)
-    cut = clipped(lens.clip_of(points), triangles, names_of(points), size, size)
-    found = fragments(cut.x, cut.y, size, size)
-    owned = owners(found, cut.names, size)
-    pixel = found.rows * size + found.columns
+def drawn(model: Model, raster: Raster, clip: Sequence[Any]) -> Drawn:
+    """The caster in a window, of clip coordinates (V,)."""
+    case, mask = model.case, model.case.params.content == "mask"
+    size = int(case.params.map_size) * (int(case.params.map_samples) if mask else 1)
+    caster, window = case.scene.caster, Pass(model, raster, size, size)
+    cut = window.cut([model.bounded(x) for x in clip], np.asarray(caster.triangles), names_of(caster.vertices))
+    found = window.cover(cut.x, cut.y)
+    owned = window.owners(found, cut.names)
+    pixel = pixels_of(found, size)
     possible, certain = np.zeros(size * size, np.bool_), np.zeros(size * size, np.bool_)
     possible[pixel] = True
     certain[pixel[owned.drawn]] = True
     if cut.wild:
         possible[:], certain[:] = True, False
     covered = certain.reshape(size, size), possible.reshape(size, size)
-    if case.params.content == "mask":
+    if mask:
         return Drawn(found, pixel, None, None, covered, cut.wild)
-    (depth,) = linear(Triangles.of(cut.x, cut.y, size, size, cut.borders), found, [cut.z])
-    depth = depth.widened(cut.z.device.depth_step)
-    won = winners(pixel, owned.drawn, depth.low, depth.high, size * size, owner=owned.owner)
+    varyings = window.varyings(cut)
+    depth = model.bounded(model.machine.depth(varyings.linear(found, model.number(cut.z))))
+    won = window.winners(pixel, owned.drawn, depth, owned.owner)
     return Drawn(found, pixel, depth, won, covered, cut.wild)
 
 
@@ -88,16 +84,24 @@ def counts(covered: Bools, k: int) -> Floats:
     return np.asarray(covered.reshape(size, k, size, k).sum(axis=(1, 3)) / float(k * k))
 
 
-def rendered(case: Any, lens: Lens, offset: Sequence[Bounded], reference: Floats) -> Map:
-    """The map that is drawn for the object at an offset; reference (S, S): as the reference has it."""
-    size, device = int(case.params.map_size), offset[0].device
-    if case.params.content == "mask":
-        k = int(case.params.map_samples)
-        low, high = (counts(each, k) for each in drawn(case, lens, offset, k * size).covered)
+def rendered(model: Model, raster: Raster, clip: Sequence[Any], reference: Floats) -> Map:
+    """The map that is drawn of the caster; reference (S, S): as exact arithmetic has it."""
+    found = drawn(model, raster, clip)
+    if model.case.params.content == "mask":
+        low, high = (counts(each, int(model.case.params.map_samples)) for each in found.covered)
         none = np.zeros(reference.shape, np.bool_)
-        return Map(Bounded(reference, np.zeros_like(reference), device), low, high, none)
-    found = drawn(case, lens, offset, size)
-    return _depths(found, reference, device)
+        return Map(Bounded(reference, np.zeros_like(reference), model.device), low, high, none)
+    return _depths(found, reference, model.device)
+
+
+def hull(model: Model, raster: Raster, clip: Sequence[Any]) -> Bounded:
+    """(S, S) all that the texels may be, and what lies between."""
+    found, size = drawn(model, raster, clip), int(model.case.params.map_size)
+    if model.case.params.content == "mask":
+        low, high = (counts(each, int(model.case.params.map_samples)) for each in found.covered)
+    else:
+        low, high = (end.reshape(size, size) for end in _hull(found, size * size))
+    return centered(low, high, model.device)
 
 
 def _depths(found: Drawn, reference: Floats, device: Device) -> Map:
@@ -130,18 +134,17 @@ def _hull(found: Drawn, texels: int) -> tuple[Floats, Floats]:
     return (np.zeros(texels), np.ones(texels)) if found.wild else (low, high)
 
 
-def allows(case: Any, lens: Lens, offset: Sequence[Bounded], image: Floats) -> tuple[Bools, Bools, Floats]:
+def allows(model: Model, raster: Raster, clip: Sequence[Any], image: Floats) -> tuple[Bools, Bools, Floats]:
     """(S, S) each, of a port's own map: whether it is legal, whether another outcome is, and the width of what is."""
-    size, device = int(case.params.map_size), offset[0].device
-    if case.params.content == "mask":
-        k = int(case.params.map_samples)
-        low, high = (counts(each, k) for each in drawn(case, lens, offset, k * size).covered)
+    found, device = drawn(model, raster, clip), model.device
+    if model.case.params.content == "mask":
+        k = int(model.case.params.map_samples)
+        low, high = (counts(each, k) for each in found.covered)
         with np.errstate(invalid="ignore"):
             share = np.rint(image * (k * k)) / (k * k)
             # A count over k^2, as a quotient or a product with a rounded inverse.
             whole = np.abs(image - share) <= (device.quotient + device.operation) * UNIT
             return whole & (low <= share) & (share <= high), low < high, np.zeros(image.shape)
-    found = drawn(case, lens, offset, size)
     assert found.depth is not None
     assert found.winners is not None
     shown = found.winners.possible

@@ -7,15 +7,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ibr_ref.array_types import Bools, Floats
-from ibr_ref.oracle.accept.bounded import Bounded, stored, uploaded
+from ibr_ref.oracle.accept.bounded import Bounded
+from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.referees.outcomes import stored
 from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.shadows import maps, places
-from ibr_ref.oracle.referees.shadows.inputs import Inputs
-from ibr_ref.oracle.referees.shadows.judging import judgement, stacked
-from ibr_ref.oracle.referees.shadows.places import Place
-
-Spot = tuple[Place, Place]
+from ibr_ref.oracle.referees.shadows.inputs import Inputs, Spot
+from ibr_ref.oracle.referees.shadows.judging import judgement
+from ibr_ref.oracle.referees.shadows.model import stacked
 
 
 def positions(given: Inputs) -> Judgement | None:
@@ -23,12 +23,8 @@ def positions(given: Inputs) -> Judgement | None:
     found = given.own("maps.positions", sampled=False)
     if found is None or given.direct:
         return None
-    x, y = places.positions(given.case, given.device)
-    right = np.ones((3, 3), np.bool_)
-    for i in range(3):
-        right[:, i] &= x[i].allows(found[:, i, 0])
-        right[i, :] &= y[i].allows(found[i, :, 1])
-    width = np.array([[2.0 * max(float(a.error), float(b.error)) for a in x] for b in y])
+    legal = given.model.bounded(given.model.program.positions())
+    right, width = np.asarray(legal.allows(found).all(axis=-1)), 2.0 * legal.error.max(axis=-1)
     return judgement("maps", "map", ["maps.positions"], [right], width)
 
 
@@ -37,15 +33,19 @@ def images(given: Inputs) -> Judgement | None:
     found = given.own("maps.image", sampled=False)
     if found is None or given.direct:
         return None
-    own = given.own("maps.positions", sampled=False)
-    x, y = places.positions(given.case, given.device)
-    results = []
+    program, model = given.model.program, given.model
+    own, legal = given.own("maps.positions", sampled=False), program.positions()
+    at = legal if own is None else stored(model.machine, own, legal)
+    usable = np.asarray(np.ones((3, 3)) if own is None else np.isfinite(own).all(axis=-1), np.bool_)
+    at = [[at[j, i] if usable[j, i] else legal[j, i] for i in range(3)] for j in range(3)]
+    if not program.right("nine_maps", "centre_map", "caster_map", "coverage", "share", "depths"):
+        return _images_at_once(given, stacked([stacked(line) for line in at]), found)
+    raster, view, results = program.map_raster(model.machine), program.light_view(program.centre), []
     for j, i in np.ndindex(3, 3):
-        usable = own is not None and np.isfinite(own[j, i]).all()
-        at = [x[i], y[j]]
-        if own is not None and usable:
-            at = [stored(n, given.device, legal) for n, legal in zip(own[j, i], at, strict=True)]
-        results.append(maps.allows(given.case, given.centre_lens, at, found[j, i]))
+        results.append(maps.allows(model, raster, program.caster_clip(at[j][i], view), found[j, i]))
+        if given.refuted(results[-1][0]):
+            results += [results[-1]] * (9 - len(results))
+            break
     right, undecided, width = (np.stack(part).reshape(found.shape) for part in zip(*results, strict=True))
     return judgement(
         "maps",
@@ -58,12 +58,26 @@ def images(given: Inputs) -> Judgement | None:
     )
 
 
+def _images_at_once(given: Inputs, positions: Number, found: Floats) -> Judgement:
+    """All nine by what a program makes of drawn ones: everything that a texel may be, and what lies between."""
+    legal = given.model.bounded(given.model.program.nine_maps(positions))
+    return judgement(
+        "maps",
+        "texel",
+        ["maps.image"],
+        [legal.allows(found)],
+        2.0 * legal.error,
+        replayed=fed("shadows", ["maps.image"], given.handed),
+        undecided=2.0 * legal.error > maps.VISIBLE,
+    )
+
+
 def controls(given: Inputs) -> Judgement | None:
     """The control points as they were given."""
     found = given.own("controls", sampled=False)
     if found is None or given.direct:
         return None
-    bound = uploaded(given.reference("controls", sampled=False), given.device)
+    bound = given.model.bounded(given.given_controls)
     right = np.asarray(bound.allows(found).all(axis=-1))
     return judgement("controls", "control point", ["controls"], [right], 2.0 * bound.error.max(axis=-1))
 
@@ -77,7 +91,7 @@ def spots(given: Inputs) -> Judgement | None:
     right = {name: np.zeros((given.count, 2), np.bool_) for name in own}
     together, undecided, width = np.zeros((given.count, 2), np.bool_), np.zeros((given.count, 2), np.bool_), []
     for sample, k in np.ndindex(given.count, 2):
-        legal = places.located(given.lines[k], given.offset_seen(sample)[k])
+        legal = places.located(given.model, given.lines[k], given.offset_seen(sample)[k])
         for place in legal:
             agrees = {
                 "warp.cell": cells is None or bool(cells[sample, k] == place.cell),
@@ -106,7 +120,7 @@ def depths(given: Inputs) -> Judgement | None:
     found = given.own("maps.depths", sampled=False)
     if found is None or not given.projective:
         return None
-    bound, feeds = given.made_depths, fed("shadows", ["maps.depths"], given.handed)
+    bound, feeds = given.model.bounded(given.made_depths), fed("shadows", ["maps.depths"], given.handed)
     return judgement("maps", "map", ["maps.depths"], [bound.allows(found)], 2.0 * bound.error, replayed=feeds)
 
 
@@ -142,14 +156,20 @@ def warped(given: Inputs) -> Judgement | None:
     found = given.own("warp.image")
     if found is None:
         return None
-    at = places.offset(given.case, given.device)
-    results = [maps.allows(given.case, lens, at, image) for lens, image in zip(given.lenses, found, strict=True)]
-    shape = np.shape(given.handed["warp.image"])
+    program, model, shape = given.model.program, given.model, np.shape(given.handed["warp.image"])
+    if not program.right("direct_map", "caster_map", "coverage", "share", "depths"):
+        legal = [model.bounded(program.direct_map(place)) for place in program.places]
+        right = np.stack([bound.allows(image) for bound, image in zip(legal, found, strict=True)]).reshape(shape)
+        width = np.stack([2.0 * bound.error for bound in legal]).reshape(shape)
+        return judgement("warp", "texel", ["warp.image"], [right], width, undecided=width > maps.VISIBLE)
+    raster = program.direct_raster(model.machine)
+    clips = [program.direct_clip(place) for place in program.places]
+    results = [maps.allows(model, raster, clip, image) for clip, image in zip(clips, found, strict=True)]
     right, undecided, width = (np.stack(part).reshape(shape) for part in zip(*results, strict=True))
     return judgement("warp", "texel", ["warp.image"], [right], width, undecided=undecided)
 
 
-def _points(given: Inputs, name: str, make: Callable[[int, Spot], Bounded]) -> Judgement | None:
+def _points(given: Inputs, name: str, make: Callable[[int, Spot], Number]) -> Judgement | None:
     found = given.own(name)
     if found is None or given.direct:
         return None
@@ -158,7 +178,7 @@ def _points(given: Inputs, name: str, make: Callable[[int, Spot], Bounded]) -> J
     return _judged(given, "control point", name, np.asarray(right.all(axis=-1)), width.max(axis=-1), feeds)
 
 
-def _texels(given: Inputs, name: str, make: Callable[[int, Spot], Bounded]) -> Judgement | None:
+def _texels(given: Inputs, name: str, make: Callable[[int, Spot], Number]) -> Judgement | None:
     found = given.own(name)
     if found is None or given.direct:
         return None
@@ -167,16 +187,20 @@ def _texels(given: Inputs, name: str, make: Callable[[int, Spot], Bounded]) -> J
 
 
 def _compared(
-    given: Inputs, found: Floats, make: Callable[[int, Spot], Bounded], feeds: Sequence[str]
+    given: Inputs, found: Floats, make: Callable[[int, Spot], Number], feeds: Sequence[str]
 ) -> tuple[Bools, Floats]:
     """For each sample at the place that agrees with most of what the port has; all right where its inputs are no numbers."""
     right, width = [], []
     for sample in range(given.count):
-        options = [make(sample, place) for place in given.places(sample)]
+        options: list[Bounded] = [given.model.bounded(make(sample, spot)) for spot in given.places(sample)]
         agree = [option.allows(found[sample]) for option in options]
         best = max(range(len(options)), key=lambda i: int(agree[i].sum()))
         right.append(agree[best] | given.spoiled(sample, feeds))
         width.append(np.broadcast_to(2.0 * options[best].error, agree[best].shape))
+        if given.refuted(right[-1]):
+            rest = given.count - len(right)
+            right, width = right + right[-1:] * rest, width + width[-1:] * rest
+            break
     return np.stack(right), np.stack(width)
 
 

@@ -62,20 +62,25 @@ def projected(given: Inputs) -> Judgement | None:
     fragments, bare = _agreeing(given)
     legal, nothing = {name: fragments.copy() for name in names}, {name: bare.copy() for name in names}
     undecided, width = seen.wild.copy(), np.zeros(len(seen.empty))
-    for i, at in enumerate(given.coordinates):
+    for i in range(given.count):
+        at = given.coordinate(i)
         if coords is not None:
             own = coords[i].reshape(-1, 3)
             nothing["project.coord"] &= (own == 0.0).all(axis=1)
             for k, axis in enumerate(at.axes):
                 legal["project.coord"] &= axis.allows(own[pixel, k])
                 np.maximum.at(width, pixel, 2.0 * axis.error)
+            if given.refuted(seen.any_of(pixel, legal["project.coord"], nothing["project.coord"])):
+                break
             at = handed(own[pixel], at)
         if found is not None:
             flat = found[i].reshape(-1)
             nothing["project.shadow"] &= flat == 0.0
-            shadows = shadow(given.case, given.map(i), at, seen.caster)
+            shadows = shadow(given.model, given.map(i), at, seen.caster)
             legal["project.shadow"] &= shadows.allows(flat[pixel])
             undecided[pixel[_differs(shadows)]] = True
+            if given.refuted(seen.any_of(pixel, legal["project.shadow"], nothing["project.shadow"])):
+                break
             np.maximum.at(width, pixel, 2.0 * np.broadcast_to(shadows.first.error, pixel.shape))
     right = [seen.any_of(pixel, legal[name], nothing[name]).reshape(seen.shape) for name in names]
     every = [np.logical_and.reduce([each[name] for name in names]) for each in (legal, nothing)]
@@ -104,7 +109,7 @@ def sums(given: Inputs) -> Judgement | None:
     own, name = given.own("project.shadow"), "accumulate.shadow"
     if own is not None:
         shadows = [stored(_numbers(s), given.device) for s in own]
-        bound = accumulated(shadows, given.case.params.accumulation == "unorm8")
+        bound = accumulated(given.model, shadows)
         # What is no number is wrong before.
         right = (bound.allows(found) & _stored(given, found)) | ~np.isfinite(own).all(axis=0)
         width = np.broadcast_to(2.0 * bound.error, found.shape)
@@ -147,34 +152,35 @@ def _outcomes(given: Inputs) -> Branches:
     seen, own = given.seen, given.own("project.shadow")
     if own is not None:
         shadows = [stored(_numbers(s).reshape(-1)[seen.pixel], given.device) for s in own]
-        return in_shadow(seen, accumulated(shadows, given.case.params.accumulation == "unorm8"))
+        return in_shadow(seen, accumulated(given.model, shadows))
     coords, outcomes = given.own("project.coord"), []
-    for i, at in enumerate(given.coordinates):
+    for i in range(given.count):
+        at = given.coordinate(i)
         if coords is not None:
             at = handed(coords[i].reshape(-1, 3)[seen.pixel], at)
-        outcomes.append(shadow(given.case, given.map(i), at, seen.caster))
-    return branches(given.case, seen, outcomes)
+        outcomes.append(shadow(given.model, given.map(i), at, seen.caster))
+    return branches(given.model, seen, outcomes)
 
 
 def colors(given: Inputs) -> Judgement | None:
     """Colour, in the port's own shadow."""
     if "color" not in given.handed:
         return None
-    seen, scene, own = given.seen, given.case.scene, given.own("accumulate.shadow", sampled=False)
+    seen, model, own = given.seen, given.model, given.own("accumulate.shadow", sampled=False)
     if own is not None:
         read = converted if given.case.params.accumulation == "unorm8" else stored
         outcomes = in_shadow(seen, read(_numbers(own).reshape(-1)[seen.pixel], given.device))
     else:
         outcomes = _outcomes(given)
-    color = resolve.colors(scene, seen, outcomes.fragment, outcomes.turned, outcomes.shadow)
-    pixel, shown = seen.pixel[outcomes.fragment], np.asarray(given.handed["color"])
+    color = resolve.colors(model, seen, outcomes.fragment, outcomes.turned, outcomes.shadow)
+    pixel, shown = seen.pixel[outcomes.fragment], resolve.as_read(model, seen, np.asarray(given.handed["color"]))
     fragments, nothing = _agreeing(given)
-    legal = resolve.allows(color, shown.reshape(-1, 3)[pixel]) & fragments[outcomes.fragment]
-    right = seen.any_of(pixel, legal, nothing & resolve.allows_nothing(scene, seen, shown, None))
+    legal = resolve.allows(color, shown[pixel]) & fragments[outcomes.fragment]
+    right = seen.any_of(pixel, legal, nothing & resolve.allows_nothing(model, seen, shown, None))
     right[seen.pixel[outcomes.crowded]] = True
     if own is not None:
         right |= ~np.isfinite(own.reshape(-1))
-    undecided, width = spread(given.case, seen, outcomes, color)
+    undecided, width = spread(model, seen, outcomes, color)
     return judgement(
         "resolve",
         "pixel",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
@@ -10,23 +9,19 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.array_types import Bools, Ints
-from ibr_ref.oracle.accept.bounded import Bounded, dot, exact, opposite, unit, uploaded
-from ibr_ref.oracle.accept.coverage import Fragments, fragments
-from ibr_ref.oracle.accept.seams import owners
-from ibr_ref.oracle.accept.winners import winners
-from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.referees.shadows import places
-from ibr_ref.oracle.referees.shadows.clipping import clipped
-from ibr_ref.oracle.referees.shadows.maps import names_of
-from ibr_ref.oracle.referees.shadows.transform import Lens, placed
-from ibr_ref.oracle.referees.shadows.varyings import Triangles, linear, perspective
+from ibr_ref.oracle.accept.bounded import Bounded, opposite
+from ibr_ref.oracle.accept.coverage import Fragments
+from ibr_ref.oracle.arithmetic.decisions import joined
+from ibr_ref.oracle.arithmetic.number import Number
+from ibr_ref.oracle.referees.shadows.drawing import Pass, Varyings, names_of, pixels_of, weights_inside
+from ibr_ref.oracle.referees.shadows.model import Model
 
 
 @dataclass(frozen=True, eq=False)
 class Objects:
     """Receivers and caster in world space, in the order in which they are drawn."""
 
-    points: list[Bounded]
+    points: list[Number]
     """x, y, z (V,)."""
     names: Ints
     """(V,) one number for vertices of an object that are one point."""
@@ -34,54 +29,27 @@ class Objects:
     """(T, 3)."""
     caster: Bools
     """(T,)."""
-    colors: list[Bounded]
-    """(V,) three channels."""
+    colors: Number
+    """(V, 3)."""
     plain: Bools
     """(T,) its mesh has one colour."""
-    device: Device
 
     @classmethod
-    def of(cls, scene: Any, device: Device, offset: Sequence[Bounded]) -> Objects:
+    def of(cls, model: Model) -> Objects:
         """Everything of a scene."""
-        points: list[list[Bounded]] = []
-        for mesh in scene.receivers:
-            vertices = np.asarray(mesh.vertices, np.float64)
-            points.append([uploaded(vertices[:, k], device) for k in range(3)])
-        points.append(placed(scene, offset))
-        meshes = [*scene.receivers, scene.caster]
-        colors = [np.asarray(mesh.color, np.float64) for mesh in meshes]
-        sizes = [len(p[0].value) for p in points]
+        scene, meshes = model.case.scene, model.program.meshes()
+        sources = [*scene.receivers, scene.caster]
+        sizes = [len(colors) for _, colors, _ in meshes]
         starts = np.cumsum([0, *sizes[:-1]])
-        counts = [len(np.asarray(mesh.triangles)) for mesh in meshes]
-        painted = np.concatenate([np.broadcast_to(c, (n, 3)) for c, n in zip(colors, sizes, strict=True)])
+        counts = [len(triangles) for _, _, triangles in meshes]
         return cls(
-            [_joined([p[k] for p in points]) for k in range(3)],
-            np.concatenate([names_of(p) + start for p, start in zip(points, starts, strict=True)]),
-            np.concatenate([np.asarray(m.triangles, np.int64) + s for m, s in zip(meshes, starts, strict=True)]),
+            [joined([model.machine.of(world[k]) for world, _, _ in meshes]) for k in range(3)],
+            np.concatenate([names_of(mesh.vertices) + start for mesh, start in zip(sources, starts, strict=True)]),
+            np.concatenate([np.asarray(t, np.int64) + start for (_, _, t), start in zip(meshes, starts, strict=True)]),
             np.repeat([False] * len(scene.receivers) + [True], counts),
-            [uploaded(painted[:, k], device) for k in range(3)],
-            np.repeat([color.ndim == 1 for color in colors], counts),
-            device,
+            joined([model.machine.of(colors) for _, colors, _ in meshes]),
+            np.repeat([np.asarray(mesh.color).ndim == 1 for mesh in sources], counts),
         )
-
-    def normals(self) -> list[Bounded]:
-        """x, y, z (T,): unit normals; any direction where a triangle may have no area."""
-        a, b, c = ([p[self.triangles[:, i]] for p in self.points] for i in range(3))
-        u, v = ([x - y for x, y in zip(other, a, strict=True)] for other in (b, c))
-        cross = [u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1))]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = unit(cross)
-        return [
-            Bounded(
-                np.nan_to_num(n.value), np.where(np.isfinite(n.value + n.error), n.error, opposite(n.device)), n.device
-            )
-            for n in found
-        ]
-
-
-def _joined(parts: Sequence[Bounded]) -> Bounded:
-    error = [np.broadcast_to(p.error, p.value.shape) for p in parts]
-    return Bounded(np.concatenate([p.value for p in parts]), np.concatenate(error), parts[0].device)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,98 +94,137 @@ class Seen:
         result[pixel[legal]] = True
         return result
 
+    def among(self, pixels: Bools) -> Seen:
+        """Only the fragments of some pixels (H W,)."""
+        return self._only(pixels[self.pixel])
 
-def see(case: Any, device: Device) -> Seen:
+    def _only(self, kept: Bools) -> Seen:
+        return replace(
+            self,
+            pixel=self.pixel[kept],
+            triangle=self.triangle[kept],
+            caster=self.caster[kept],
+            depth=self.depth[kept],
+            world=[axis[kept] for axis in self.world],
+            color=[channel[kept] for channel in self.color],
+            cosine=self.cosine[kept],
+            other=self.other[kept],
+            edge_on=self.edge_on[kept],
+            inside=self.inside[kept],
+        )
+
+    def bounded(self) -> Seen:
+        """Without fragments of which nothing is known, such as those of triangles seen edge on: their pixels are wild."""
+        numbers = [self.depth, *self.world, *self.color, self.cosine, self.other]
+        known = np.logical_and.reduce([np.isfinite(n.value + n.error) for n in numbers])
+        if known.all():
+            return self
+        wild = self.wild.copy()
+        wild[self.pixel[~known]] = True
+        return replace(self._only(known), wild=wild)
+
+
+def see(model: Model) -> Seen:
     """What the camera of a case may see."""
-    scene = case.scene
-    width, height = int(scene.camera.width), int(scene.camera.height)
-    objects = Objects.of(scene, device, places.offset(case, device))
-    clip = Lens.of(scene.camera).clip_of(objects.points)
-    one = exact(np.ones(len(objects.names)), device)
-    painted = [one] if objects.plain.all() else [one, *objects.colors]
-    cut = clipped([*clip, *objects.points, *painted], objects.triangles, objects.names, width, height)
-    found = fragments(cut.x, cut.y, width, height)
-    triangles, owned = Triangles.of(cut.x, cut.y, width, height, cut.borders), owners(found, cut.names, width)
-    (depth,) = linear(triangles, found, [cut.z])
-    depth = depth.widened(device.depth_step)
-    pixel = found.rows * width + found.columns
-    won = winners(pixel, owned.drawn, depth.low, depth.high, width * height, owner=owned.owner)
-    shown = _only(found, won.possible)
-    source = cut.source[shown.triangle]
-    values = perspective(triangles, shown, cut.attributes, cut.w)
-    cosine, other, edge_on = _lit(scene, objects.normals(), source, values[:3])
+    camera, program, machine = model.case.scene.camera, model.program, model.machine
+    width, height = int(camera.width), int(camera.height)
+    objects = Objects.of(model)
+    window = Pass(model, program.surface_raster(machine), width, height)
+    vertices = [*program.to_clip(objects.points), *objects.points]
+    painted = [Number(machine, np.ones(len(objects.names)))]
+    if not (objects.plain.all() and program.right("colors")):
+        painted += [objects.colors[:, k] for k in range(3)]
+    with np.errstate(all="ignore"):
+        cut = window.cut([model.bounded(x) for x in [*vertices, *painted]], objects.triangles, objects.names)
+        found = window.cover(cut.x, cut.y)
+        varyings, owned = window.varyings(cut), window.owners(found, cut.names)
+        w = model.number(cut.w)
+        depth = machine.depth(program.window_depth(varyings, found, model.number(cut.z), w))
+        pixel = pixels_of(found, width)
+        won = window.winners(pixel, owned.drawn, model.bounded(depth), owned.owner)
+        shown = _only(found, won.possible)
+        source = cut.source[shown.triangle]
+        corners = [model.number(x) for x in cut.attributes]
+        world = [model.bounded(x) for x in program.world(varyings, shown, w, corners[:3])]
+        cosine, other, edge_on = _lit(model, objects, source, world)
+        colors = _colors(model, objects, varyings, shown, (w, corners[3:]), source)
     seen = Seen(
         pixel=pixel[won.possible],
         triangle=source,
         caster=objects.caster[source],
-        depth=depth[won.possible],
-        world=values[:3],
-        color=_colors(objects, source, values[3:]),
+        depth=model.bounded(program.read_back(depth))[won.possible],
+        world=world,
+        color=colors,
         cosine=cosine,
         other=other,
         edge_on=edge_on,
         empty=won.empty,
         wild=np.full(width * height, cut.wild),
         shape=(height, width),
-        inside=np.asarray((shown.weights >= 0.0).all(axis=1)),
+        inside=weights_inside(shown),
     )
-    return _bounded(seen)
-
-
-def _bounded(seen: Seen) -> Seen:
-    """Without fragments of which nothing is known, such as those of triangles seen edge on: their pixels are wild."""
-    numbers = [seen.depth, *seen.world, *seen.color, seen.cosine, seen.other]
-    known = np.logical_and.reduce([np.isfinite(n.value + n.error) for n in numbers])
-    if known.all():
-        return seen
-    wild = seen.wild.copy()
-    wild[seen.pixel[~known]] = True
-    return replace(
-        seen,
-        pixel=seen.pixel[known],
-        triangle=seen.triangle[known],
-        caster=seen.caster[known],
-        depth=seen.depth[known],
-        world=[axis[known] for axis in seen.world],
-        color=[channel[known] for channel in seen.color],
-        cosine=seen.cosine[known],
-        other=seen.other[known],
-        edge_on=seen.edge_on[known],
-        wild=wild,
-        inside=seen.inside[known],
-    )
+    return seen.bounded()
 
 
 def _only(found: Fragments, kept: Bools) -> Fragments:
     return Fragments(**{field.name: getattr(found, field.name)[kept] for field in fields(found)})
 
 
-@np.errstate(invalid="ignore")
-def _colors(objects: Objects, source: Ints, varying: Sequence[Bounded]) -> list[Bounded]:
+def _colors(
+    model: Model,
+    objects: Objects,
+    varyings: Varyings,
+    shown: Fragments,
+    corners: tuple[Number, list[Number]],
+    source: Ints,
+) -> list[Bounded]:
     """(n,) channels: of meshes with one colour as it is, which a port may interpolate all the same, else interpolated.
 
-    varying: the number 1, of which the error is that of any constant, relative to it; and the channels, if some are painted.
+    corners: w, and the varyings: the number 1, of which the error is that of any constant, relative to it; and the channels,
+    if some are painted.
     """
-    one, *channels = varying
-    plain = [color[objects.triangles[source, 0]] for color in objects.colors]
-    plain = [p.widened(p.size * one.error) for p in plain]
+    w, (one, *channels) = corners
+    constant = model.bounded(varyings.perspective(shown, w, [one])[0])
+    flat = objects.colors[objects.triangles[source, 0]]
+    plain = [model.bounded(flat[:, k]) for k in range(3)]
+    plain = [p.widened(p.size * constant.error) for p in plain]
     if not channels:
         return plain
-    return [p.where(objects.plain[source], v) for p, v in zip(plain, channels, strict=True)]
+    found = [model.bounded(model.machine.of(c)) for c in model.program.colors(varyings, shown, w, channels)]
+    if not model.program.right("colors"):
+        return found
+    return [p.where(objects.plain[source], v) for p, v in zip(plain, found, strict=True)]
 
 
-# Where nothing is known of a fragment's place, infinite errors become NaN; such fragments are sorted out.
-@np.errstate(invalid="ignore")
-def _lit(
-    scene: Any, normals: Sequence[Bounded], source: Ints, world: Sequence[Bounded]
-) -> tuple[Bounded, Bounded, Bools]:
-    """(n,) max(0, n . l) on either side of the triangle, and whether the eye may be on either."""
-    device = world[0].device
-    normal = [n[source] for n in normals]
-    eye, light = np.asarray(scene.camera.eye, np.float64), np.asarray(scene.light.arrays[0], np.float64)
-    to_eye = [uploaded(eye[k], device) - exact(eye[3], device) * world[k] for k in range(3)]
-    facing = dot(normal, to_eye)
-    cosine = dot(normal, unit([uploaded(light[k], device) - world[k] for k in range(3)]))
-    turned = np.where(facing.value < 0.0, -1.0, 1.0)
-    mine = Bounded(turned * cosine.value, cosine.error, device)
-    return mine.positive(), (-mine).positive(), np.asarray(np.abs(facing.value) <= facing.error)
+def _normals(model: Model, objects: Objects) -> list[Number]:
+    """x, y, z (T,); any direction where a triangle may have no area."""
+    found = model.program.normals([p[objects.triangles] for p in objects.points])
+    result = []
+    for n in found:
+        known = np.isfinite(n.value + n.deviation)
+        error = np.where(known, n.deviation, opposite(model.device))
+        result.append(Number(model.machine, np.nan_to_num(n.value), error))
+    return result
+
+
+def _lit(model: Model, objects: Objects, source: Ints, world: list[Bounded]) -> tuple[Bounded, Bounded, Bools]:
+    """(n,) max(0, n . l), the same on the triangle's other side, and whether the eye may be on either."""
+    normals, count, machine = _normals(model, objects), len(source), model.machine
+
+    def run(origin: Ints) -> dict[str, Any]:
+        lane = np.arange(len(origin))
+        normal = [Number(machine, n.value[source[origin]], n.error[source[origin]], {}, lane) for n in normals]
+        places = [model.number(axis[origin], lane, "world") for axis in world]
+        return {"cosine": machine.of(model.program.cosine(normal, places))}
+
+    found, _ = machine.follow(run, count)
+    cosine, origin = model.bounded(found["cosine"]), found["origin"]
+    with np.errstate(all="ignore"):
+        exact = model.exact.cosine([n.value[source] for n in normals], [axis.value for axis in world])
+    first, other, edge_on = np.arange(count), np.arange(count), np.zeros(count, np.bool_)
+    forks = np.arange(count, len(origin))
+    other[origin[forks]], edge_on[origin[forks]] = forks, True
+    away = np.abs(cosine.value - np.asarray(exact)[origin])
+    swap = edge_on & (away[other] < away[first])
+    first, other = np.where(swap, other, first), np.where(swap, first, other)
+    return cosine[first], cosine[other], edge_on

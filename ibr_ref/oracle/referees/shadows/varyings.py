@@ -14,14 +14,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.borders import Cut, Piece
-from ibr_ref.oracle.accept.borders import pieces as pieces_of
 from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.accept.coverage import Fragments, snapped
+from ibr_ref.oracle.accept.whole import Whole
 from ibr_ref.oracle.device import UNIT, Device
 from ibr_ref.oracle.referees.shadows.transform import gamma
 
@@ -40,13 +41,16 @@ class Triangles:
     extent: tuple[Floats, Floats]
     """(T,) each: the largest coordinate at which a plane is evaluated or anchored."""
     unsnapped: bool
-    cuts: Sequence[Cut | None]
-    """(T,) what the picture's borders leave of their polygons, where they may be cut there."""
+    cuts: Sequence[Sequence[Cut | Whole]]
+    """(T,) what else planes may be set up over: what the picture's borders leave of its polygon, the triangle before it
+    was clipped."""
     device: Device
 
     @classmethod
-    def of(cls, x: Bounded, y: Bounded, width: int, height: int, cuts: Sequence[Cut | None] = ()) -> Triangles:
-        """x, y (T, 3) in pixels, before they are snapped; cuts: none, or one a triangle."""
+    def of(
+        cls, x: Bounded, y: Bounded, width: int, height: int, cuts: Sequence[Sequence[Cut | Whole]] = ()
+    ) -> Triangles:
+        """x, y (T, 3) in pixels, before they are snapped; cuts: none, or those of each triangle."""
         (at_x, off_x), (at_y, off_y) = snapped(x), snapped(y)
         unsnapped = x.device.unsnapped
         if unsnapped:
@@ -57,15 +61,20 @@ class Triangles:
         extent_x, extent_y = (np.maximum(np.abs(a).max(axis=1), n) for a, n in ((at_x, width), (at_y, height)))
         return cls(at_x, at_y, (off_x, off_y), area, (extent_x, extent_y), unsnapped, cuts, x.device)
 
+    @cached_property
+    def whole(self) -> Bools:
+        """(T,) planes may be set up over the triangle before it was clipped."""
+        found = np.zeros(len(self.x), np.bool_)
+        found[: len(self.cuts)] = [any(isinstance(each, Whole) for each in cuts) for cuts in self.cuts]
+        return found
+
     def pieces(self, found: Fragments) -> list[tuple[int, Piece]]:
         """Triangles, and the pieces that may cover fragments of theirs."""
         result = []
-        for triangle, cut in enumerate(self.cuts):
-            if cut is None:
-                continue
+        for triangle, cut in ((t, cut) for t, cuts in enumerate(self.cuts) for cut in cuts):
             mine = np.flatnonzero(found.triangle == triangle)
             px, py = (np.asarray(a[mine] + 0.5, np.float64) for a in (found.columns, found.rows))
-            for piece in pieces_of(cut, (self.x[triangle], self.y[triangle]), px, py, self.device):
+            for piece in cut.pieces((self.x[triangle], self.y[triangle]), px, py, self.device):
                 result.append((triangle, replace(piece, points=mine[piece.points])))
         return result
 
@@ -78,7 +87,7 @@ class Mixer:
     moves: tuple[Floats, Floats]
     """(n,) each: how far the corners' moves take a fragment along x and y."""
     pieces: list[tuple[int, Piece]]
-    """Triangles, and what the picture's borders may leave of them."""
+    """Triangles, and what else their planes may be set up over."""
 
     @classmethod
     def of(cls, triangles: Triangles, found: Fragments) -> Mixer:
@@ -199,7 +208,8 @@ def _between_corners(triangles: Triangles, found: Fragments, corner: Bounded, va
     off = np.where(known & ~np.isnan(value.error), value.error, np.inf)
     if not triangles.unsnapped:
         most = np.maximum(high - at, at - low)
-        off = np.minimum(off, most + gamma(value.device, 6.0, 2.0) * np.maximum(np.abs(low), np.abs(high)))
+        between = most + gamma(value.device, 6.0, 2.0) * np.maximum(np.abs(low), np.abs(high))
+        off = np.where(triangles.whole[t], off, np.minimum(off, between))
     return Bounded(at, off, value.device)
 
 

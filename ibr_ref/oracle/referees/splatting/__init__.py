@@ -14,7 +14,6 @@ import numpy as np
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement, Parameter, TraceRow, up_to
-from ibr_ref.oracle.referees.splatting.cause import causes, recognizes
 from ibr_ref.oracle.referees.splatting.model import model_of
 from ibr_ref.oracle.referees.splatting.parameters import parameters
 from ibr_ref.oracle.referees.splatting.stages import STAGES, Stages
@@ -47,10 +46,14 @@ class SplattingReferee:
 
     def causes(self, case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
         """The known bugs that explain a wrong stage."""
+        from ibr_ref.oracle.referees.splatting.cause import causes  # with all known bugs: what passes needs none
+
         return causes(case, device, handed, wrong)
 
     def recognizes(self, case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
         """Whether the known bug of a name explains a wrong stage."""
+        from ibr_ref.oracle.referees.splatting.cause import recognizes
+
         return recognizes(case, device, handed, wrong, cause)
 
     def parameters(self, case: Case) -> list[Parameter]:

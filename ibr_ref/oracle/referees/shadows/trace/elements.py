@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 from ibr_ref.oracle.judgement import TraceRow
-from ibr_ref.oracle.referees.shadows import replay_maps
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
+from ibr_ref.oracle.referees.shadows.stages import PARTS
 from ibr_ref.oracle.referees.shadows.trace.maps import control, depth, map_texel, position
 from ibr_ref.oracle.referees.shadows.trace.picture import pixel
 from ibr_ref.oracle.referees.shadows.trace.warp import grid_point, paced, place, warped_texel
 
-STEPS = {
-    "maps": (replay_maps.positions, replay_maps.depths, replay_maps.images),
-    "controls": (replay_maps.controls,),
-    "warp": (
-        replay_maps.spots,
-        replay_maps.shares,
-        replay_maps.row_grids,
-        replay_maps.rows,
-        replay_maps.grids,
-        replay_maps.warped,
-    ),
-}
+STEPS = ("maps", "controls", "warp")
 PICTURES = ("depth", "project", "accumulate", "resolve", "image")
 
 
@@ -57,7 +46,7 @@ def trace(given: Inputs, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
 def _array(given: Inputs, stage: str, index: tuple[int, ...]) -> str:
     """The first of the stage's arrays with an element of that index, a wrong one before others."""
     fitting = []
-    for judge in STEPS[stage]:
+    for judge in (judge for name, _, judge in PARTS.values() if name == stage):
         found = judge(given)
         inside = found is not None and len(index) == found.wrong.ndim
         if found is None or not inside or not all(i < n for i, n in zip(index, found.wrong.shape, strict=True)):

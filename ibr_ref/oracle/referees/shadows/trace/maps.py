@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.oracle.accept.bounded import stored, uploaded
 from ibr_ref.oracle.judgement import TraceRow
+from ibr_ref.oracle.referees.outcomes import stored
 from ibr_ref.oracle.referees.rows import compared_numbers, number, told
-from ibr_ref.oracle.referees.shadows import maps, places, replay_maps
+from ibr_ref.oracle.referees.shadows import maps, replay_maps
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 
 MOST = 12
@@ -20,35 +20,42 @@ def position(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     j, i = index
     own = given.own("maps.positions", sampled=False)
     rows = []
-    for k, (axis, at) in enumerate(zip(places.positions(given.case, given.device), (i, j), strict=True)):
-        name, widest = "xy"[k], max(abs(float(s.displacement[k].value)) for s in given.samples)
+    legal = given.model.bounded(given.model.program.positions())
+    for k, (axis, at) in enumerate(zip((legal[0, :, 0], legal[:, 0, 1]), (i, j), strict=True)):
+        name, widest = "xy"[k], max(abs(float(moved.value[k])) for moved in given.displacements)
         rows.append(told(f"{name}: range", np.asarray(given.case.scene.offset_range)[k].tolist()))
         rows.append(told(f"{name}: widened by the light's samples", f"{widest:.9g}"))
-        rows += [number(f"{name}: line {n}", line) for n, line in enumerate(axis)]
+        rows += [number(f"{name}: line {n}", axis[n]) for n in range(3)]
         rows.append(told(f"{name}: of this map", f"line {at}"))
-    lines = [axis[at] for axis, at in zip(places.positions(given.case, given.device), (i, j), strict=True)]
-    return [*rows, number("position x, y", lines, None if own is None else own[j, i], array="maps.positions")]
+    return [
+        *rows,
+        number(
+            "position x, y",
+            [legal[j, i, k] for k in range(2)],
+            None if own is None else own[j, i],
+            array="maps.positions",
+        ),
+    ]
 
 
 def depth(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     """Map (j, i): how far before the light the caster's middle is."""
-    own = given.own("maps.depths", sampled=False)
+    own, bounded = given.own("maps.depths", sampled=False), given.model.bounded
+    found = None if own is None else own[index]
     low, high = np.asarray(given.case.scene.caster.bounds).tolist()
     return [
         told("the caster's box, from", ", ".join(f"{n:.9g}" for n in low)),
         told("to", ", ".join(f"{n:.9g}" for n in high)),
-        number("offset of the map", [line[n] for line, n in zip(given.lines, index[::-1], strict=True)]),
-        number(
-            "depth of its middle along the view axis", given.made_depths[index], None if own is None else own[index]
-        ),
+        number("offset of the map", [bounded(line)[n] for line, n in zip(given.lines, index[::-1], strict=True)]),
+        number("depth of its middle along the view axis", bounded(given.made_depths)[index], found),
     ]
 
 
 def control(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     """Point (j, i, r, c)."""
     own = given.own("controls", sampled=False)
-    value = given.reference("controls", sampled=False)[index]
-    points = [uploaded(v, given.device) for v in value]
+    value, legal = given.reference("controls", sampled=False)[index], given.model.bounded(given.given_controls)
+    points = [legal[(*index, k)] for k in range(2)]
     found = None if own is None else own[index]
     j, i, r, c = index
     return [
@@ -61,27 +68,26 @@ def control(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
 
 def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRow]:
     """A texel of a map that is rendered: the triangles that may cover its samples."""
-    case, device, k = given.case, given.device, int(given.case.params.map_samples)
+    case, k = given.case, int(given.case.params.map_samples)
     depth, moved = case.params.content == "depth", False
-    (row, column), at, lens = index[-2:], places.offset(case, device), given.lenses[0]
+    (row, column), program, model = index[-2:], given.model.program, given.model
     if array == "maps.image":
-        lens = given.centre_lens
-        own = given.own("maps.positions", sampled=False)
+        own, legal = given.own("maps.positions", sampled=False), program.positions()
         reference = given.reference("maps.positions", sampled=False)
-        line = [p[n] for p, n in zip(places.positions(case, device), index[1::-1], strict=True)]
         usable = own is not None and bool(np.isfinite(own[index[:2]]).all())
         moved = usable and own is not None and bool((own[index[:2]] != reference[index[:2]]).any())
+        at = legal[index[:2]]
         if own is not None and usable:
-            at = [stored(n, device, legal) for n, legal in zip(own[index[:2]], line, strict=True)]
-        else:
-            at = line
-    elif given.count > 1:
-        lens = given.lenses[index[0]]
+            at = stored(model.machine, own[index[:2]], at)
+        raster, clip = program.map_raster(model.machine), program.caster_clip(at, program.light_view(program.centre))
+    else:
+        place = program.places[index[0] if given.count > 1 else 0]
+        at, raster, clip = program.offset, program.direct_raster(model.machine), program.direct_clip(place)
     size = int(case.params.map_size) * (1 if depth else k)
-    found = maps.drawn(case, lens, at, size)
+    found = maps.drawn(model, raster, clip)
     samples = 1 if depth else k
     port = np.asarray(given.handed[array])[index]
-    rows = [number("the object's offset", at)]
+    rows = [number("the object's offset", [model.bounded(at)[k] for k in range(2)])]
     near = np.flatnonzero((found.found.rows // samples == row) & (found.found.columns // samples == column))
     rows.append(told("triangles that may cover its samples", len(near)))
     for i in near[:MOST]:

@@ -87,7 +87,7 @@ def _nothing(given: Inputs, arrays: Handed, index: Index) -> list[TraceRow]:
         own = _own(given, given.handed, "project.shadow")  # whatever the pixel shows, its own shadows are summed
         shadows = [exact([0.0 if own is None else np.nan_to_num(own[i][index])], device) for i in range(given.count)]
         rows.append(_sum(given, shadows, arrays, index)[0])
-    background = [channel[0] for channel in resolve.background(given.case.scene, given.seen)]
+    background = [channel[0] for channel in resolve.background(given.model)]
     return [*rows, *_colored(background, arrays, index, "background")]
 
 
@@ -97,21 +97,21 @@ def _shaded(given: Inputs, fragment: int, arrays: Handed, index: Index) -> list[
     one = slice(fragment, fragment + 1)
     world, caster = [axis[one] for axis in seen.world], seen.caster[one]
     coords, own = _own(given, arrays, "project.coord"), _own(given, arrays, "project.shadow")
-    for i, lens in enumerate(given.lenses):
+    for i in range(given.count):
         name, sample = (f"sample {i}: ", (i, *index)) if given.count > 1 else ("", None)
-        place = coordinate(lens, world)
+        place = coordinate(given.model, i, world)
         found = None if coords is None else coords[i][index]
         axes = [axis[0] for axis in place.axes]
         rows.append(number(f"{name}s, t, r", axes, found, array="project.coord", index=sample))
         if "project.coord" in given.handed and found is not None:
             place = handed(found[None], place)
-        legal = shadow(given.case, given.map(i), place, caster)
+        legal = shadow(given.model, given.map(i), place, caster)
         port = None if own is None else float(own[i][index])
         rows += [*_read(given, i, place, name), _told_shadow(name, legal, port, sample)]
         fed = "project.shadow" in given.handed and port is not None and bool(np.isfinite(port))
         shadows.append(stored(np.array([port]), given.device) if fed else legal.first)
     total_row, total = _sum(given, shadows, arrays, index)
-    light = resolve.colors(given.case.scene, seen, np.array([fragment]), np.zeros(1, np.bool_), total)
+    light = resolve.colors(given.model, seen, np.array([fragment]), np.zeros(1, np.bool_), total)
     rows += [
         total_row,
         number("surface colour", [channel[fragment] for channel in seen.color]),
@@ -124,7 +124,7 @@ def _shaded(given: Inputs, fragment: int, arrays: Handed, index: Index) -> list[
 
 def _sum(given: Inputs, shadows: list[Bounded], arrays: Handed, index: Index) -> tuple[TraceRow, Bounded]:
     """The samples' sum, and what the colour is made with."""
-    total = accumulated(shadows, given.case.params.accumulation == "unorm8")
+    total = accumulated(given.model, shadows)
     if "accumulate.shadow" not in arrays:
         return number("sum of the samples", total[0]), total
     found = np.array([float(np.asarray(arrays["accumulate.shadow"])[index])])

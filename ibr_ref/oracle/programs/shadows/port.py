@@ -1,0 +1,72 @@
+"""Shadows by image warping as someone ports it from the page alone: all stages in order."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ibr_ref.oracle.programs.program import Floats
+from ibr_ref.oracle.programs.shadows.project import Project
+from ibr_ref.oracle.programs.shadows.resolve import Resolve
+from ibr_ref.oracle.programs.shadows.surface import Picture, Surface
+from ibr_ref.oracle.programs.shadows.warp import Warp, Warped
+
+Arrays = dict[str, NDArray[Any]]
+
+
+class Port(Picture, Warp, Project, Resolve):
+    """Methods "warp" and "direct". For "warp", inputs["maps"] are the nine maps and their controls."""
+
+    def render(self) -> Arrays:
+        """Every stage array of the contract but the margins, "color" (H, W, 3) and "depth" (H, W)."""
+        arrays, images = self._maps()
+        surface = self.surface()
+        coords, shadows = zip(
+            *(self._on_picture(surface, *pair) for pair in zip(self.places, images, strict=True)), strict=True
+        )
+        arrays |= {"project.coord": self._samples(list(coords)), "project.shadow": self._samples(list(shadows))}
+        arrays["accumulate.shadow"] = self.accumulated(list(shadows))
+        arrays["color"] = self._color(surface, arrays["accumulate.shadow"])
+        arrays["depth"] = self.read_back(surface.depth.reshape(self._size))
+        return arrays
+
+    @property
+    def _size(self) -> tuple[int, int]:
+        return self.scene.camera.height, self.scene.camera.width
+
+    def _samples(self, arrays: list[NDArray[Any]]) -> NDArray[Any]:
+        """One array, with a leading axis where there are several samples of the light."""
+        return np.stack(arrays) if len(arrays) > 1 else arrays[0]
+
+    def _maps(self) -> tuple[Arrays, list[Floats]]:
+        """The arrays up to the warp, and the map of each sample."""
+        if self.params.method == "direct":
+            images = [self.direct_map(place) for place in self.places]
+            return {"warp.image": self._samples(images)}, images
+        positions, controls, prepared = self.positions(), self.controls(), self.images()
+        arrays: Arrays = {"maps.positions": positions, "maps.image": self.nine_maps(positions), "controls": controls}
+        lines = self.lines()
+        warps = [self.warped(place, controls, prepared, lines) for place in self.places]
+        if self.projective:
+            arrays["maps.depths"] = self.caster_depths(lines)
+        for name in Warped.__dataclass_fields__:
+            if name == "shares" and not self.projective:
+                continue
+            arrays[f"warp.{name}"] = self._samples([getattr(warp, name) for warp in warps])
+        return arrays, [warp.image for warp in warps]
+
+    def _on_picture(self, surface: Surface, place: Floats, image: Floats) -> tuple[Floats, Floats]:
+        """coord (H, W, 3) and shadow (H, W) of one sample."""
+        coord, shadow = self.projected(surface, place, image)
+        coords, shadows = np.zeros((*self._size, 3)), np.zeros(self._size)
+        coords.reshape(-1, 3)[surface.pixel], shadows.reshape(-1)[surface.pixel] = coord, shadow
+        return coords, shadows
+
+    def _color(self, surface: Surface, shadow: Floats) -> Floats:
+        """(H, W, 3)."""
+        height, width = self._size
+        colors = np.broadcast_to(self.background(), (height * width, 3)).copy()
+        colors[surface.pixel] = np.stack(self.resolved(surface, shadow.reshape(-1)[surface.pixel]), axis=-1)
+        return self.turned_rows(self.written(self.do.color(colors.reshape(height, width, 3))))

@@ -1,0 +1,79 @@
+"""A FAIL names the bug: that of the broken port, with what this case does not tell from it, and never another one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from ibr_ref.oracle.device import IEEE32
+from ibr_ref.oracle.faults.shadows import MUTANTS, Port
+from ibr_ref.oracle.programs.shadows.raster import Raster
+from ibr_ref.oracle.referees.shadows.inputs import Inputs
+from tests.oracle.judgements import in_bytes, picture
+from tests.oracle.shadows.judged import REFEREE, Arrays, case, drawn
+
+BOX = "shadows-box"
+STAGED = {
+    "maps-rows-flipped": BOX,
+    "controls-v-upwards": BOX,
+    "warp-mix-reversed": BOX,
+    "warp-half-a-texel": BOX,
+    "depth-viewport-shifted": BOX,
+    "project-t-upwards": BOX,
+    "project-bias-sign": "shadows-depths",
+    "accumulate-over": "shadows-nearest",
+    "resolve-half-lambert": BOX,
+    "resolve-columns-mirrored": BOX,
+}
+"""One of each stage and kind, and where it shows."""
+
+
+def named(name: str, arrays: Arrays) -> list[str]:
+    judgements = REFEREE.judge_stages(case(name), IEEE32, arrays, to_first_wrong=True) if len(arrays) > 2 else []
+    judgements.append(REFEREE.judge_image(case(name), IEEE32, arrays))
+    wrong = next(j for j in judgements if j.wrong.any())
+    found = REFEREE.causes(case(name), IEEE32, arrays, wrong)
+    assert found is not None
+    assert found.given_up_after is None
+    return [cause.name for cause in found.causes]
+
+
+def broken(name: str, mutant: str) -> Arrays:
+    return drawn(name, port=next(m.port for m in MUTANTS if m.name == mutant))
+
+
+@pytest.mark.parametrize("mutant", STAGED)
+def test_the_bug_is_named(mutant: str) -> None:
+    assert named(STAGED[mutant], broken(STAGED[mutant], mutant)) == [mutant]
+
+
+@pytest.mark.parametrize("mutant", ["project-s-mirrored", "resolve-bgr"])
+def test_the_bug_is_named_by_the_picture_alone(mutant: str) -> None:
+    assert named(BOX, picture(broken(BOX, mutant))) == [mutant]
+
+
+class _TooWide(Raster):
+    def column(self, x: Any, width: int) -> Any:
+        return super().column(1.003 * x, width)
+
+
+class _Unknown(Port):
+    """A bug that is in no catalogue: the picture is a few thousandths too wide."""
+
+    surface_raster = _TooWide
+
+
+@pytest.mark.parametrize("kept", [lambda arrays: arrays, in_bytes], ids=["stages", "bytes"])
+def test_a_bug_that_is_not_known_has_no_name(kept: Any) -> None:
+    assert named(BOX, kept(drawn(BOX, port=_Unknown))) == []
+
+
+def test_what_a_fault_does_not_change_is_shared() -> None:
+    """A suspect of the blending has the right program's surfaces and maps."""
+    right = Inputs(case(BOX), IEEE32)
+    of = {m.name: Inputs(case(BOX), IEEE32, {}, right, m.port, right=right) for m in MUTANTS}  # type: ignore[arg-type]
+    assert of["accumulate-over"].seen is right.seen
+    assert of["accumulate-over"].map(0) is right.map(0)
+    assert of["depth-y-upwards"].seen is not right.seen
+    assert of["warp-t-upwards"].map(0) is not right.map(0)
