@@ -159,10 +159,11 @@ class WholeTriangles(Port):
         row, column, number, faces, *_ = super().rasterized(vertices, triangle, face)
         own = self.own[triangle - self.first]
         window, w = self.window(own[:, :4]), own[:, 3]
-        edges, _ = self.coverage(*(self.snapped(axis) for axis in window), row, column)
+        x, y = (self.snapped(axis) for axis in window)
+        edges, _ = self.coverage(x, y, row, column)
         weights = self.weights(window, edges, row, column)
         first = int(np.argmax(w))
-        point = [self.by_planes(weights, own[:, 4 + k], list(w), first) for k in range(3)]
+        point = [self.by_planes(weights, list(own[:, 4 + k]), list(w), first) for k in range(3)]
         return row, column, number, faces, point, self.face_depth(weights, self.do.divide(own[:, 2], w), w)
 
 
