@@ -12,7 +12,7 @@ from ibr_ref.oracle.programs.splatting.variants import VARIANTS
 from ibr_ref.oracle.self_test import plain_port, tried
 
 COARSE = [variant for variant in VARIANTS if variant.coarse]
-BUG = next(mutant for mutant in RASTER.mutants if mutant.name == "flipped-borders")
+BUG = next(mutant for mutant in RASTER.mutants if mutant.name == "farthest-wins")
 
 
 @pytest.mark.parametrize("method", tried())
