@@ -57,7 +57,9 @@ def test_random_devices_are_right_on_them(method: str, one_thread: None) -> None
     settings(QUIET, max_examples=40)(seed(3)(given(cases(method))(right)))()
 
 
-SYSTEMS = [(method.name, system) for method in methods.records() for system in method.judged[1]]
+SYSTEMS = [
+    ("displacement", "relief"), ("splatting", "square"), ("splatting", "disc"), ("shadows", "warp"), ("shadows", "direct"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("method", "system"), SYSTEMS)
