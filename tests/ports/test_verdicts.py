@@ -7,17 +7,22 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from ibr_ref import oracle
 from ibr_ref.oracle import PROFILES, Case, Examination, Outcome
 from ibr_ref.oracle.declaration import ANY
 from ibr_ref.oracle.examination import judge
+from ibr_ref.oracle.files.submission import Submission
+from ibr_ref.oracle.judgement import Glances
+from ibr_ref.oracle.referees import referee
 from tests.oracle.displacement.test_cases import MOST_UNDECIDED, WALLS
+from tests.oracle.judgements import complaints
 
 
-def examined(case: Case, device: Any, work: Path, **options: Any) -> Examination:
-    """Export, draw from the folder, read what was written, judge by the tightest profile that explains it."""
+def submitted(case: Case, device: Any, work: Path, **options: Any) -> tuple[Case, Submission]:
+    """Export, draw from the folder, read what was written."""
     from ibr_ref.ports.case_folder import read_case
     from ibr_ref.ports.drawing import Drawer, drawn
 
@@ -27,6 +32,12 @@ def examined(case: Case, device: Any, work: Path, **options: Any) -> Examination
     loaded = oracle.load_case(work / "cases" / case.name)
     submission = oracle.load_submission(work / "port", loaded)
     assert submission.profile == "gl"
+    return loaded, submission
+
+
+def examined(case: Case, device: Any, work: Path, **options: Any) -> Examination:
+    """As if nothing had been declared: by the tightest profile that explains it."""
+    loaded, submission = submitted(case, device, work, **options)
     return oracle.check(loaded, replace(submission, declaration=ANY))
 
 
@@ -37,7 +48,10 @@ def assert_passes(examination: Examination) -> None:
     assert len(verdict.stages) >= 4, "hardly a stage was handed in: the test says little"
 
 
-@pytest.mark.parametrize("name", oracle.names())
+REAL_SIZED = ("displacement-metropolis", "splatting-kettle", "shadows-stage")
+
+
+@pytest.mark.parametrize("name", [name for name in oracle.names() if name not in REAL_SIZED])
 def test_the_port_passes(name: str, device: Any, tmp_path: Path) -> None:
     examination = examined(oracle.build(name), device, tmp_path)
     assert_passes(examination)
@@ -47,6 +61,26 @@ def test_the_port_passes(name: str, device: Any, tmp_path: Path) -> None:
     width = max((stage.median_width or 0.0 for stage in verdict.stages), default=0.0)
     share = f"{own.undecided.mean():.3%} undecided by {case.profile}"
     print(f"\n{name}: {verdict.profile}, {share}, median widths up to {width:.1g}; {device.renderer}")
+
+
+@pytest.mark.parametrize("name", REAL_SIZED)
+def test_the_port_passes_in_real_size(name: str, device: Any, tmp_path: Path) -> None:
+    """By what it declares: all stages everywhere, and every eighth row and column of the picture by itself.
+
+    For an undeclared one a picture of that size is judged by one device after the other, which small ones are above.
+    """
+    case, submission = submitted(oracle.build(name), device, tmp_path)
+    judge_of, own = referee(case.method), PROFILES["gl"]
+    stages = judge_of.judge_stages(case, own, submission.handed)
+    assert len(stages) >= 3
+    assert not complaints(stages)
+    picture = {name: submission.handed[name] for name in ("color", "depth")}
+    if isinstance(judge_of, Glances):
+        some = np.zeros(case.frame.depth.shape, np.bool_)
+        some[::8, ::8] = True
+        assert judge_of.explains_pixels(case, own, picture, some)
+    else:
+        assert not complaints([judge_of.judge_image(case, own, picture)])
 
 
 @pytest.mark.parametrize(

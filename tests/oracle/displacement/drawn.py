@@ -15,6 +15,9 @@ from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.oracle.referees.displacement import DisplacementReferee
+from ibr_ref.oracle.referees.displacement.model import Model
+from ibr_ref.oracle.referees.displacement.replay import Port as Replayed
+from ibr_ref.oracle.referees.displacement.stages import STAGES, Stages
 
 Arrays = dict[str, Any]
 
@@ -40,6 +43,34 @@ def draw(name: str, policy: Policy, port: type[Any] | None = None) -> Arrays:
     if policy.color_bits == 8:
         arrays["color"] = color_bytes(arrays["color"])
     return arrays
+
+
+@cache
+def plain(name: str) -> Arrays:
+    """What the plain port in float32 draws: every stage of it is right (`test_mutants`)."""
+    return draw(name, Policy())
+
+
+def first_wrong(name: str, arrays: Arrays) -> str:
+    """The first wrong stage of a port with a bug, by the case's own profile; empty: none.
+
+    Stages before the first array that differs from the plain port's are that port's, and are not judged again.
+    """
+    right = plain(name)
+    stages = Stages(Replayed(model=Model(case(name), PROFILES[case(name).profile]), handed=arrays))
+    differs = False
+    for stage in STAGES:
+        judged = (*stages.names(stage), *(["color"] if stage == "shade" else []))  # lighting is a part of it
+        differs = differs or any(changed(arrays[array], right[array]) for array in judged)
+        with np.errstate(all="ignore"):
+            if differs and stages.judge(stage).wrong.any():
+                return stage
+    return ""
+
+
+def changed(array: Any, right: Any) -> bool:
+    """Whether a number is another one."""
+    return not np.array_equal(array, right, equal_nan=array.dtype.kind == "f")
 
 
 def wrong(judgements: list[Judgement]) -> list[tuple[str, str, int, list[int]]]:

@@ -14,7 +14,17 @@ from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.oracle.faults.kinds import Mutant
-from tests.oracle.displacement.drawn import REFEREE, SMALL, case, draw, wrong
+from tests.oracle.displacement.drawn import (
+    REFEREE,
+    SMALL,
+    Arrays,
+    case,
+    changed,
+    draw,
+    first_wrong,
+    plain,
+    wrong,
+)
 
 PICTURED = MUTANTS[::5]
 
@@ -35,16 +45,34 @@ def fate(mutant: Mutant, *, by_picture: bool) -> Fate:
     """Case by case, until it is dead both ways; a picture that is known to hide it is not asked for."""
     stages = stage = picture = ""
     for name in (name for name in SMALL if mutant.applies(case(name).system)):
-        device, arrays = PROFILES[case(name).profile], draw(name, Policy(), mutant.port)
-        shown = {"color": color_bytes(arrays["color"])}
-        if not stages:
-            judged = REFEREE.judge_stages(case(name), device, arrays, to_first_wrong=True)
-            stages, stage = next(((name, found) for found, *_ in wrong(judged)), ("", ""))
-        if by_picture and not picture and wrong([REFEREE.judge_image(case(name), device, shown)]):
+        arrays = draw(name, Policy(), mutant.port)
+        if not stages and (found := first_wrong(name, arrays)):
+            stages, stage = name, found
+        if by_picture and not picture and pictured(name, arrays):
             picture = name
         if stages and (picture or mutant.hidden or not by_picture):
             break
     return Fate(stages, stage, picture)
+
+
+def shown(arrays: Arrays) -> Arrays:
+    """The picture in bytes, alone."""
+    return {"color": color_bytes(arrays["color"])}
+
+
+def pictured(name: str, arrays: Arrays) -> bool:
+    """Whether the picture alone is wrong; the plain port's is right."""
+    if not changed(shown(arrays)["color"], shown(plain(name))["color"]):
+        return False
+    return bool(REFEREE.judge_image(case(name), PROFILES[case(name).profile], shown(arrays)).wrong.any())
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_the_plain_port_is_right(name: str) -> None:
+    """What a mutant shares with it is not judged again."""
+    device = PROFILES[case(name).profile]
+    assert not wrong(REFEREE.judge_stages(case(name), device, plain(name)))
+    assert not wrong([REFEREE.judge_image(case(name), device, shown(plain(name)))])
 
 
 @pytest.mark.parametrize("mutant", [m for m in MUTANTS if not m.survives], ids=lambda mutant: mutant.name)
