@@ -79,7 +79,7 @@ def _conformance() -> dict[str, Beside]:
 
 def _hunt() -> dict[str, Beside]:
     return {
-        **always("method", "seconds", "seed", "out", "device"),
+        **always("method", "system", "seconds", "seed", "out", "device"),
         "port": Beside("there is one port", {"page": ABSENT}),
         "serve": Beside("it says how a command is told", {"port": GIVEN}),
         "page": Beside("there is one port", {"port": ABSENT}),
