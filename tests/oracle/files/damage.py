@@ -169,7 +169,6 @@ def other_dtype(path: Path) -> bool:
 
 MAYBE: dict[str, Callable[[Path], bool]] = {
     "Fortran order": fortran,
-    "NaN": with_nan,
     "another dtype": other_dtype,
 }
 """For .npy files to which it applies."""

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ibr_ref.oracle import check
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.files import Problem, load_submission
+from ibr_ref.oracle.findings import Outcome
 from tests.oracle.files import damage
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -68,6 +70,20 @@ def test_any_array(handed: Path, full_case: Case, way: str) -> None:
 @pytest.mark.parametrize("way", damage.MAYBE)
 def test_any_array_to_which_it_applies(handed: Path, full_case: Case, way: str) -> None:
     assert spoiled(handed, full_case, "*.npy", damage.MAYBE[way]) > 5
+
+
+def test_a_stage_without_a_number_is_named(handed: Path, full_case: Case) -> None:
+    """It is judged, as nothing may be right; where it is wrong, nothing was drawn. Margins are not judged."""
+    named = 0
+    for file in sorted(handed.glob("*.npy")):
+        with damage.spare(file):
+            if not damage.with_nan(file) or "margin" in file.name:
+                continue
+            verdict = check(full_case, load_submission(handed, full_case), name_causes=False).verdict
+            assert verdict.outcome is Outcome.INCONCLUSIVE, file.name
+            assert any(reason.startswith(file.name) for reason in verdict.reasons), verdict.reasons
+            named += 1
+    assert named > 5
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields as dataclass_fields
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ def tree(folder: Path) -> dict[str, bytes]:
 
 
 def renamed(case: Case, **changes: Any) -> Case:
-    fields = {name: getattr(case, name) for name in Case.__dataclass_fields__}
+    fields = {each.name: getattr(case, each.name) for each in dataclass_fields(case) if each.init}
     return Case(**{**fields, **changes})
 
 
