@@ -22,6 +22,12 @@ def right(program: Any, *names: str) -> bool:
     return all(getattr(type(program), name).__module__.startswith(PROGRAMS) for name in names)
 
 
+def overridden(kind: type[Any], right: type[Any]) -> set[str]:
+    """The names of which a program with a bug has others than the right one."""
+    own = {name for each in kind.__mro__ if not issubclass(right, each) for name in vars(each)}
+    return own - {"__doc__", "__module__"}
+
+
 class Program:
     """What every program has at hand. A known bug is a subclass that overrides one method."""
 

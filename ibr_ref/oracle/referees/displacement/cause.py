@@ -13,6 +13,7 @@ from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.programs.displacement.raster import Raster
 from ibr_ref.oracle.programs.displacement.vertex import Vertex
+from ibr_ref.oracle.programs.program import overridden
 from ibr_ref.oracle.referees.causes import Inquiry
 from ibr_ref.oracle.referees.displacement.likely import likely
 from ibr_ref.oracle.referees.displacement.model import Model
@@ -63,5 +64,4 @@ def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
 
 def _draws_the_same_faces(kind: type[Any]) -> bool:
     """Whether nothing is changed that the fragments hang on."""
-    changed = {name for each in kind.__mro__ if not issubclass(Program, each) for name in vars(each)}
-    return not changed & FACES - {"__doc__", "__module__"}
+    return not overridden(kind, Program) & FACES

@@ -18,6 +18,7 @@ from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.pipeline.machine import Machine
+from ibr_ref.oracle.programs.program import overridden
 from ibr_ref.oracle.programs.shadows import Port as Program
 
 
@@ -33,8 +34,7 @@ class Model:
 
     def changes(self, names: Collection[str]) -> bool:
         """Whether a fault changes what of the program has one of these names."""
-        own = {name for each in self.kind.__mro__ if not issubclass(Program, each) for name in vars(each)}
-        return bool((own - {"__doc__", "__module__"}) & {*names})
+        return bool(overridden(self.kind, Program) & {*names})
 
     @cached_property
     def machine(self) -> Machine:

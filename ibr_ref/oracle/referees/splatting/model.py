@@ -21,6 +21,7 @@ from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.pipeline.machine import Machine
 from ibr_ref.oracle.pipeline.splats import Contest, Drawn, contest
 from ibr_ref.oracle.programs.program import Program as AnyProgram
+from ibr_ref.oracle.programs.program import overridden
 from ibr_ref.oracle.programs.splatting import Port as Program
 from ibr_ref.oracle.programs.splatting.atlas import Atlas
 from ibr_ref.oracle.programs.splatting.case import Case as Shared
@@ -62,8 +63,7 @@ class Model:
 
     def changes(self, *parts: type[Any]) -> bool:
         """Whether a fault changes what these parts of the program have."""
-        names = {name for each in self.kind.__mro__ if not issubclass(Program, each) for name in vars(each)}
-        return bool(names & {name for part in parts for name in vars(part)} - {"__doc__", "__module__"})
+        return bool(overridden(self.kind, Program) & {name for part in parts for name in vars(part)})
 
     @property
     def fetches_of(self) -> Model | None:
