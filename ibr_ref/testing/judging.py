@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ibr_ref import methods
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.declaration import Declaration, declared
 from ibr_ref.oracle.device import LOOSEST, Device
 from ibr_ref.oracle.files import Submission, submission_from_arrays
 from ibr_ref.oracle.judgement import Explains, Handed, Judgement, Recognizes
+from ibr_ref.oracle.referees import referee
 from ibr_ref.oracle.referees.reads import reads_of
 from ibr_ref.oracle.trials import FREEDOMS, judge
 
@@ -123,7 +123,7 @@ def _failures(case: Case, port: Port, device: str | None, known: Collection[Bug]
 @np.errstate(all="ignore")
 def with_causes(case: Case, failure: Failure) -> Bug:
     """The bug with the known bugs that explain it, where the method has any."""
-    judge_of = methods.named(case.method).referee.open()()
+    judge_of = referee(case.method)
     if failure.judged is None or not isinstance(judge_of, Explains):
         return failure.bug
     found = judge_of.causes(case, *failure.judged)
@@ -133,7 +133,7 @@ def with_causes(case: Case, failure: Failure) -> Bug:
 def _is_known(case: Case, failure: Failure, known: Collection[Bug]) -> bool:
     """Whether it shows where a known bug does, and is not another one there: known bugs that were named can be told."""
     here = [bug for bug in known if bug.place == failure.bug.place]
-    judge_of = methods.named(case.method).referee.open()()
+    judge_of = referee(case.method)
     judged = failure.judged
     if judged is None or not isinstance(judge_of, Recognizes) or not all(bug.causes for bug in here):
         return bool(here)
@@ -142,7 +142,7 @@ def _is_known(case: Case, failure: Failure, known: Collection[Bug]) -> bool:
 
 
 def _wrong(case: Case, submission: Submission, declaration: Declaration, to_first_wrong: bool) -> list[Judgement]:
-    judge_of = methods.named(case.method).referee.open()()
+    judge_of = referee(case.method)
     handed, device = submission.handed, _device(declaration)
     if _whole(case, handed):
         found = judge_of.judge_stages(case, device, handed, to_first_wrong=to_first_wrong)
