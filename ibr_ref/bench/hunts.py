@@ -103,9 +103,8 @@ _SIZES = {"displacement": _of_displacement, "splatting": _of_splatting, "shadows
 
 
 def visible(method: str) -> list[Mutant]:
-    """The broken ports that a picture can show, every fourth one first."""
-    found = [mutant for mutant in plain_port(method).MUTANTS if not (mutant.survives or mutant.hidden)]
-    return [mutant for first in range(STRIDE) for mutant in found[first::STRIDE]]
+    """The broken ports that a picture can show."""
+    return [mutant for mutant in plain_port(method).MUTANTS if not (mutant.survives or mutant.hidden)]
 
 
 def rows_of(file: Path) -> list[Row]:
@@ -126,11 +125,10 @@ def run(file: Path, wanted: Sequence[str], seconds: float, shrinking: float) -> 
 
 
 def _in_turn(ports: dict[str, list[Mutant]]) -> Iterator[tuple[str, Mutant]]:
-    """The first share of each method before the second of any."""
-    for part in range(STRIDE):
+    """Every fourth one of each method before the others of any."""
+    for first in range(STRIDE):
         for method, found in ports.items():
-            share = -(-len(found) // STRIDE)
-            yield from ((method, mutant) for mutant in found[part * share : (part + 1) * share])
+            yield from ((method, mutant) for mutant in found[first::STRIDE])
 
 
 def table(rows: Sequence[Row]) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import numpy as np
 
 from ibr_ref.array_types import Floats as Array
@@ -294,7 +296,7 @@ class _ThreeTaps(Port):
         return sampler.mix([self.compared(r, texel) for texel in texels], fx, fy)
 
 
-class _Changed(Port):
+class _Changed(Port, ABC):
     """Another bias matrix."""
 
     def texture_matrix(self) -> Array:
@@ -302,9 +304,9 @@ class _Changed(Port):
         self.change(matrix)
         return matrix
 
+    @abstractmethod
     def change(self, matrix: Array) -> None:
         """In place."""
-        raise NotImplementedError
 
 
 @PROJECT.add("project-s-mirrored")

@@ -87,18 +87,11 @@ def shadow(model: Model, texels: Map, at: Coordinate, caster: Bools) -> Shadow:
         near = np.flatnonzero(reads(open_texels, at.s, at.t))
         runs.append(_followed(model, centered(texels.low, texels.high, at.s.device), axes, caster, near))
     fragment = np.concatenate([run[0] for run in runs])
-    value, error = (np.concatenate([get(run[1]) for run in runs]) for get in (_value, _deviation))
+    found = [model.bounded(run[1]) for run in runs]
+    value, error = np.concatenate([x.value for x in found]), np.concatenate([x.error for x in found])
     spoiled = at.spoiled | (reads(texels.spoiled, at.s, at.t) if texels.spoiled.any() else False)
     spoiled[np.concatenate([run[2] for run in runs])] = True
     return _ordered(fragment, Bounded(value, error, at.s.device), exact, spoiled)
-
-
-def _value(x: Number) -> Floats:
-    return np.asarray(x.value)
-
-
-def _deviation(x: Number) -> Floats:
-    return np.asarray(np.broadcast_to(x.deviation, x.shape))
 
 
 def _followed(
