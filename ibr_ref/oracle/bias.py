@@ -19,9 +19,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.findings import Bias
 from ibr_ref.oracle.judgement import Handed, Judgement, Parameter
 from ibr_ref.oracle.referees import referee

@@ -12,12 +12,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-UNIT = 2.0**-24
-"""Largest relative error of one correct rounding to float32: IEEE 754-2019, section 4.3.1, 24 significant bits."""
-TINY = 2.0**-126
-"""Smallest normal float32: results below it may be flushed to zero. IEEE 754-2019, table 3.5; Vulkan 1.3, "Precision and
-Operation of SPIR-V Instructions": denormals may be flushed."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Device:

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.oracle.cases import Case
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement, Parameter, TraceRow, up_to
 
 READS = {"shade.level": (), "color": ("shade.level",), "depth": ()}

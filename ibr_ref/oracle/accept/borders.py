@@ -26,8 +26,9 @@ from itertools import combinations
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 
 ROUNDINGS = 9.0
 """Of a term of a plane, besides a quotient: a difference of corners, one of values, their product, the sum of two, the

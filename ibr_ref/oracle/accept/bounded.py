@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ibr_ref.affine.rows import TINY, UNIT
 from ibr_ref.array_types import Bools, Floats
-from ibr_ref.oracle.device import TINY, UNIT, Device
+from ibr_ref.oracle.device import Device
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.oracle.accept.bounded import Bounded
-from ibr_ref.oracle.device import GL, UNIT
+from ibr_ref.oracle.device import GL
 
 
 def allows_color(color: Bounded, found: NDArray[np.generic]) -> NDArray[np.bool_]:

@@ -14,9 +14,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded, exact
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 
 FARTHEST = 1e9
 """Texels beyond it are not told apart: a float32 does not, and whole numbers end somewhere."""

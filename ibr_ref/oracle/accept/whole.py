@@ -23,10 +23,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.borders import ROUNDINGS, Piece, weights
 from ibr_ref.oracle.accept.coverage import RASTER
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,15 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import reduce
+from math import frexp, prod
 from typing import Any
 
 import numpy as np
 
+from ibr_ref.affine import pairs
+from ibr_ref.affine.pairs import add_number, add_product, sum_up
+from ibr_ref.affine.rows import DEVIATION, ERROR, EXACT, SLOPES, TINY, UNIT, VALUE, rounded
 from ibr_ref.array_types import Ints
 from ibr_ref.oracle.arithmetic import numpy_names
 from ibr_ref.oracle.arithmetic.choices import Choices
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import TINY, UNIT, Device
+from ibr_ref.oracle.arithmetic.symbols import all_of, flat, places, shaped, together
+from ibr_ref.oracle.device import Device
 
 TRUNCATED = 2.0
 """Of an operation that is rounded, or truncated, the error is below one unit in the last place: what is exact stays so."""
@@ -56,8 +61,8 @@ class Bounds(Choices):
 
     def lanes(self, x: Any, lane: Ints) -> Number:
         """A row for each lane."""
-        x, zero = self.of(x), np.zeros(len(lane))
-        return Number(self, x.value + zero, x.error + zero, {k: s + zero for k, s in x.slopes.items()}, lane)
+        x = self.of(x)
+        return Number.of_rows(self, shaped(x.rows, (len(lane),)), x.names, lane)
 
     def named(self, name: str, x: Any) -> Number:
         """What is used again: its own error becomes a symbol, one that no other number has."""
@@ -65,85 +70,67 @@ class Bounds(Choices):
         if not np.any(number.error):
             return number
         self.names[name] = self.names.get(name, 0) + 1
-        slopes = {**number.slopes, f"{name} {self.names[name]}": number.error}
-        return Number(self, number.value, 0.0, slopes, number.lane)
+        rows = np.concatenate([number.rows, number.rows[ERROR : ERROR + 1]])
+        rows[ERROR] = 0.0
+        return Number.of_rows(self, rows, (*number.names, f"{name} {self.names[name]}"), number.lane)
 
     def rounded(self, x: Number, units: float) -> Number:
         """After a rounding; an exact 0 stays exact, and so do floats where rounding is correct (IEEE 754-2019, 4.3)."""
-        size = np.abs(x.value) + x.deviation
-        added = units * UNIT * size + TINY * (size > 0.0)
-        if units <= 1.0 and not x.deviation.all():
-            added = np.where((x.deviation == 0.0) & (size >= TINY), _from_float(x.value), added)
-        result = Number(self, x.value, x.error + added, x.slopes, x.lane)
-        result._deviation = x.deviation + added
-        return result
+        rows = rounded(flat(x.rows, x.shape), units)
+        return Number.of_rows(self, rows.reshape(x.rows.shape), x.names, x.lane)
 
     def widened(self, x: Any, quotients: float = 0.0, operations: float = 0.0) -> Number:
         """With so many roundings of its size more: those of another form that are not what that form's own bounds say."""
-        x = self.of(x)
+        number = self.of(x)
         units = (quotients * self.device.quotient + operations * self.device.operation) * UNIT
-        return Number(self, x.value, x.error + units * (np.abs(x.value) + x.deviation), x.slopes, x.lane)
+        return number.off_by(units * (np.abs(number.value) + number.deviation))
 
     # --- Operations --------------------------------------------------------------------------------------------------
 
     def add(self, a: Any, b: Any) -> Number:
         """A + b."""
-        if self._stays(a, b):
-            return self.of(a)
-        return self.rounded(self.of(a).plus(b), self.device.operation)
+        return self._added(a, b, 1.0)
 
     def subtract(self, a: Any, b: Any) -> Number:
         """A - b."""
-        if self._stays(a, b):
-            return self.of(a)
-        return self.rounded(self.of(a).plus(b, -1.0), self.device.operation)
+        return self._added(a, b, -1.0)
 
-    def _stays(self, a: Any, b: Any) -> bool:
-        """Whether a sum is its first number, the other being 0: operations that are rounded or truncated leave it so."""
-        a, b = self.of(a), self.of(b)
-        nothing = self.device.operation <= TRUNCATED and not b.value.any() and not b.deviation.any()
-        return bool(nothing and b.lane is None and np.broadcast_shapes(a.shape, b.shape) == a.shape)
+    def _added(self, a: Any, b: Any, sign: float) -> Number:
+        first, other = self.of(a), self.of(b)
+        # A sum is its first number, the other being 0: operations that are rounded or truncated leave it so.
+        nothing = self.device.operation <= TRUNCATED and other.lane is None and _is_zero(other)
+        if nothing and together(first.shape, other.shape) == first.shape:
+            return first
+        return self.combined(pairs.plus, first, other, sign, self.device.operation)
 
     def product(self, a: Any, b: Any) -> Number:
         """A b, not rounded."""
-        a, b = self.of(a), self.of(b)
-        with np.errstate(invalid="ignore"):
-            slopes = {k: s * b.value for k, s in a.slopes.items()}
-            for k, t in b.slopes.items():
-                along = a.value * t
-                slopes[k] = slopes[k] + along if k in slopes else along
-            error = np.abs(a.value) * b.error + a.error * np.abs(b.value) + a.deviation * b.deviation
-        error = np.where(np.isnan(error), np.inf, error)
-        return Number(self, a.value * b.value, error, slopes, self.lane(a, b))
+        return self.combined(pairs.times, self.of(a), self.of(b), EXACT)
 
     def multiply(self, a: Any, b: Any) -> Number:
         """A b; by 1 it is exact where products are correctly rounded."""
         first, second = self.of(a), self.of(b)
-        if self.device.operation <= 1.0 and (_is(first, 1.0) or _is(second, 1.0)):
+        if self._correct and (_is(first, 1.0) or _is(second, 1.0)):
             return second if _is(first, 1.0) else first
-        found = self.product(first, second)
-        if self.device.operation <= 1.0 and (_is_binary(first) or _is_binary(second)):
-            return found
-        return self.rounded(found, self.device.operation)
+        return self.combined(pairs.times, first, second, self._units(first, second))
+
+    @property
+    def _correct(self) -> bool:
+        """Whether operations are correctly rounded."""
+        return self.device.operation <= 1.0
+
+    def _units(self, a: Number, b: Number) -> float:
+        """Of a product: by a power of two it is exact where rounding is correct."""
+        return EXACT if self._correct and (_is_binary(a) or _is_binary(b)) else self.device.operation
 
     def quotient(self, a: Any, b: Any) -> Number:
-        """A / b, not rounded: (a - q b) / b with q = the quotient of the values, to first order over b's value."""
-        a, b = self.of(a), self.of(b)
-        with np.errstate(all="ignore"):
-            q, size = a.value / b.value, np.abs(b.value)
-            slopes = {k: (s - q * t) / b.value for k, s, t in self.pairs(a, b)}
-            error = (a.error + np.abs(q) * b.error) / size
-            room = size - b.deviation
-            over = reduce(np.add, [np.abs(s) for s in slopes.values()], error) * b.deviation / room
-            error = np.where(room > 0.0, error + over, np.inf)
-        slopes = {k: np.where(np.isfinite(error), s, 0.0) for k, s in slopes.items()}
-        return Number(self, q, np.where(np.isnan(error), np.inf, error), slopes, self.lane(a, b))
+        """A / b, not rounded."""
+        return self.combined(pairs.over, self.of(a), self.of(b), EXACT)
 
     def divide(self, a: Any, b: Any) -> Number:
         """A / b; by a constant power of two it is exact."""
         b = self.of(b)
-        found = self.quotient(a, b)
-        return found if _is_binary(b) else self.rounded(found, self.device.quotient)
+        return self.combined(pairs.over, self.of(a), b, EXACT if _is_binary(b) else self.device.quotient)
 
     def root(self, a: Any) -> Number:
         """sqrt(x + d) = r + d / 2r - d^2 / 2r (r + sqrt(x + d))^2."""
@@ -153,27 +140,45 @@ class Bounds(Choices):
             bent = off**2 / (2.0 * r * (r + np.sqrt(np.maximum(a.value - off, 0.0))) ** 2)
             linear = (r > 0.0) & (off < a.value)
             wide = np.where(r > 0.0, np.minimum(off / r, np.sqrt(off)), np.sqrt(off))
-            error = np.where(linear, a.error / (2.0 * r) + bent, wide)
-            slopes = {k: np.where(linear, s / (2.0 * r), 0.0) for k, s in a.slopes.items()}
-        return self.rounded(Number(self, r, error, slopes, a.lane), self.device.root)
+            rows = np.where(linear, a.rows / (2.0 * r), 0.0)
+            rows[VALUE], rows[ERROR] = r, np.where(linear, a.error / (2.0 * r) + bent, wide)
+        return self.rounded(
+            Number(self, r, rows[ERROR], dict(zip(a.names, rows[SLOPES:], strict=True)), a.lane), self.device.root
+        )
 
     def sum(self, terms: Sequence[Any], shape: tuple[int, ...] = ()) -> Number:
         """In any order: n roundings of the sum of the sizes."""
-        terms = [self.of(t) for t in terms]
-        shape = np.broadcast_shapes(shape, *(t.shape for t in terms))
-        terms = [t for t in terms if not _is(t, 0.0)] or [self.of(np.zeros(shape))]
-        total = reduce(Number.plus, terms)
-        size = reduce(np.add, [np.abs(t.value) + t.deviation for t in terms])
-        error = total.error + (len(terms) if len(terms) > 1 else 0) * self.device.operation * UNIT * size
-        return Number(self, total.value + np.zeros(shape), error, total.slopes, total.lane)
+        numbers = [self.of(t) for t in terms]
+        shape = together(shape, *(x.shape for x in numbers))
+        return self._sum([(x, None) for x in numbers if not _is(x, 0.0)], shape)
 
     def dot(self, a: Sequence[Any], b: Sequence[Any]) -> Number:
-        """The sum of products, fused or not; where rounding is correct, 0 x is no term."""
-        pairs = [(self.of(x), self.of(y)) for x, y in zip(a, b, strict=True)]
-        shape = np.broadcast_shapes(*(x.shape for pair in pairs for x in pair))
-        if self.device.operation <= 1.0:
-            pairs = [pair for pair in pairs if not any(_is(x, 0.0) for x in pair)]
-        return self.sum([self.multiply(x, y) for x, y in pairs] or [0.0], shape)
+        """The sum of products, fused or not."""
+        both = [(self.of(x), self.of(y)) for x, y in zip(a, b, strict=True)]
+        shape = together(*(x.shape for pair in both for x in pair))
+        return self._sum([pair for pair in both if not self._is_no_term(*pair)], shape)
+
+    def _is_no_term(self, a: Number, b: Number) -> bool:
+        """0 x: where rounding is correct, and on any device in a sum that is the same in all lanes."""
+        return (self._correct or a.rows.ndim == b.rows.ndim == 1) and (_is(a, 0.0) or _is(b, 0.0))
+
+    def _sum(self, terms: Sequence[tuple[Number, Number | None]], shape: tuple[int, ...]) -> Number:
+        """Of numbers and of products, added in any order."""
+        factors = [x for term in terms for x in term if x is not None]
+        names = all_of(*(x.names for x in factors))
+        total, size = np.zeros((SLOPES + len(names), prod(shape))), np.zeros(prod(shape))
+        room = np.empty_like(total)
+        for a, b in terms:
+            if b is not None and self._correct and (_is(a, 1.0) or _is(b, 1.0)):
+                a, b = (b if _is(a, 1.0) else a), None
+            rows, at = flat(a.rows, shape), places(names, a.names)
+            if b is None:
+                add_number(total, size, rows, at)
+            else:
+                units = self._units(a, b)
+                add_product(total, size, rows, flat(b.rows, shape), at, places(names, b.names), units, room)
+        sum_up(total, size, len(terms) * self.device.operation * UNIT if len(terms) > 1 else 0.0)
+        return Number.of_rows(self, total.reshape(len(total), *shape), names, self.lane(*factors))
 
     def lerp(self, a: Any, b: Any, f: Any) -> Number:
         """A (1 - f) + b f, or a + (b - a) f."""
@@ -212,15 +217,13 @@ class Bounds(Choices):
                 result = self.multiply(result, base)
             base, exponent = self.multiply(base, base), exponent // 2
         size = np.abs(result.value) + result.deviation
-        error = result.error + np.where(size > TINY, size * intrinsic, 0.0)
-        return Number(self, result.value, error, result.slopes, result.lane)
+        return result.off_by(np.where(size > TINY, size * intrinsic, 0.0))
 
     # --- The device's own parts ----------------------------------------------------------------------------------------
 
     def weight(self, fraction: Any) -> Number:
         """A bilinear weight, which may be off by less than a step."""
-        x = self.of(fraction)
-        return Number(self, x.value, x.error + self.device.weight_step, x.slopes, x.lane)
+        return self.of(fraction).off_by(self.device.weight_step)
 
     def filtered(self, mixed: Any, texels: Any) -> Any:
         """A lerp of texels in floats: what filters do in bytes is known of the right filter as a whole."""
@@ -228,8 +231,7 @@ class Bounds(Choices):
 
     def of_bytes(self, x: Any) -> Number:
         """What a filter makes of texels that are bytes."""
-        x = self.of(x)
-        return Number(self, x.value, x.error + self.device.filter_step, x.slopes, x.lane)
+        return self.of(x).off_by(self.device.filter_step)
 
     def blended_byte(self, value: Any) -> Number:
         """The sum that blending makes, as a frame buffer of bytes holds it.
@@ -246,8 +248,7 @@ class Bounds(Choices):
 
     def depth(self, depth: Any) -> Number:
         """A window depth in the depth buffer."""
-        x = self.of(depth)
-        return Number(self, x.value, x.error + self.device.depth_step, x.slopes, x.lane)
+        return self.of(depth).off_by(self.device.depth_step)
 
     def color(self, color: Any) -> Any:
         """A colour: bytes are judged where they are read."""
@@ -263,9 +264,14 @@ def _from_float(x: Any) -> Any:
 
 def _is_binary(x: Number) -> bool:
     """A power of two that is the same everywhere, and exact: products with it and quotients by it are exact."""
-    return x.value.ndim == 0 and not x.deviation and np.frexp(x.value)[0] == 0.5
+    return x.rows.ndim == 1 and not x.rows[DEVIATION] and frexp(x.rows[VALUE])[0] == 0.5
+
+
+def _is_zero(x: Number) -> bool:
+    """Everywhere, and exact; most numbers say with their first element that they are not."""
+    return not (x.rows.size and x.rows.item(0)) and not x.value.any() and not x.deviation.any()
 
 
 def _is(x: Number, number: float) -> bool:
     """A number that is the same everywhere, and exact."""
-    return x.value.ndim == 0 and float(x.value) == number and not x.deviation.any()
+    return x.rows.ndim == 1 and x.rows[VALUE] == number and not x.rows[DEVIATION]

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import reduce
 from typing import Any
 
 import numpy as np
 
+from ibr_ref.affine import pairs
+from ibr_ref.affine.rows import DEVIATION, ERROR, VALUE
 from ibr_ref.array_types import Ints
 from ibr_ref.oracle.arithmetic.decisions import Decisions
 from ibr_ref.oracle.arithmetic.number import Number, Truth, may_and_must
+from ibr_ref.oracle.arithmetic.symbols import all_of, over_symbols, shaped, together
 
 
 class Choices(Decisions):
@@ -23,17 +25,18 @@ class Choices(Decisions):
     def negative(self, x: Any) -> Number:
         """-x."""
         x = self.of(x)
-        return Number(self, -x.value, x.error, {k: -s for k, s in x.slopes.items()}, x.lane)
+        rows = -x.rows
+        rows[ERROR], rows[DEVIATION] = x.error, x.deviation
+        return Number.of_rows(self, rows, x.names, x.lane)
 
     def absolute(self, x: Any) -> Number:
         """|x|."""
         x = self.of(x)
         sign = np.where(x.value < 0.0, -1.0, 1.0)
         sure = np.abs(x.value) >= x.deviation
-        error = np.where(sure, x.error, x.deviation)
-        return Number(
-            self, np.abs(x.value), error, {k: np.where(sure, sign * s, 0.0) for k, s in x.slopes.items()}, x.lane
-        )
+        rows = np.where(sure, sign * x.rows, 0.0)
+        rows[VALUE], rows[ERROR], rows[DEVIATION] = np.abs(x.value), np.where(sure, x.error, x.deviation), x.deviation
+        return Number.of_rows(self, rows, x.names, x.lane)
 
     def rising(self, f: Callable[[Any], Any], x: Any) -> Number:
         """A function that nowhere falls: x where it changes nothing, else all between its ends, the value in the middle."""
@@ -47,8 +50,10 @@ class Choices(Decisions):
                 half = np.where((middle + half < high) | (middle - half > low), np.nextafter(half, np.inf), half)
         bounded = np.isfinite(middle)
         value = np.where(same | ~bounded, value, middle)
-        error = np.where(same, x.error, np.where(bounded, half, np.inf))
-        return Number(self, value, error, {k: np.where(same, s, 0.0) for k, s in x.slopes.items()}, x.lane)
+        rows, off = np.where(same, x.rows, 0.0), np.where(bounded, half, np.inf)
+        rows[VALUE], rows[ERROR] = value, np.where(same, x.error, off)
+        rows[DEVIATION] = np.where(same, x.deviation, off)
+        return Number.of_rows(self, rows, x.names, x.lane)
 
     def where(self, condition: Any, a: Any, b: Any) -> Number:
         """One or the other; the condition is decided."""
@@ -56,8 +61,10 @@ class Choices(Decisions):
         lane = self.lane(a, b)
         if isinstance(condition, Truth):
             lane, condition = lane if lane is not None else condition.lane, condition.decided()
-        slopes = {k: np.where(condition, s, t) for k, s, t in self.pairs(a, b)}
-        return Number(self, np.where(condition, a.value, b.value), np.where(condition, a.error, b.error), slopes, lane)
+        names = all_of(a.names, b.names)
+        shape = together(a.shape, b.shape)
+        first, second = (shaped(over_symbols(x.rows, x.names, names), shape) for x in (a, b))
+        return Number.of_rows(self, np.where(condition, first, second), names, lane)
 
     def least(self, a: Any, b: Any) -> Number:
         """The smaller of two: one of them where that is certain, else all between the ends."""
@@ -115,10 +122,7 @@ class Choices(Decisions):
 
     def alternatives(self, f: Number, g: Number) -> Number:
         """Two legal forms of one thing: the first one's value, and an error that covers both."""
-        away = g.plus(f, -1.0)
-        spread = reduce(np.add, [np.abs(s) for s in away.slopes.values()], np.abs(away.value) + g.error)
-        error = np.maximum(f.error, np.where(np.isnan(spread), np.inf, spread))
-        return Number(self, f.value, error, f.slopes, self.lane(f, g))
+        return self.combined(pairs.either, f, g)
 
     def between(self, x: Number, low: Any, high: Any) -> Number:
         """What is known to lie between two ends, where that says much more than its own bound; the value stays if it may."""
@@ -129,8 +133,10 @@ class Choices(Decisions):
             error = np.maximum(high - value, value - low) + 2.0**-52 * np.abs(value)
             error = np.where(np.isnan(error), np.inf, error)
             wide = ~(x.deviation <= 2.0 * error)
-        slopes = {k: np.where(wide, 0.0, s) for k, s in x.slopes.items()}
-        return Number(self, np.where(wide, value, x.value), np.where(wide, error, x.error), slopes, x.lane)
+        rows = np.where(wide, 0.0, x.rows)
+        rows[VALUE], rows[ERROR] = np.where(wide, value, x.value), np.where(wide, error, x.error)
+        rows[DEVIATION] = np.where(wide, error, x.deviation)
+        return Number.of_rows(self, rows, x.names, x.lane)
 
     def beyond(self, x: Number, least: float, up: Any) -> Number:
         """What is decided to be >= `least` (`up`), or <= -`least`."""
@@ -141,7 +147,9 @@ class Choices(Decisions):
         """Rows of a number, or of each component of a vector, a lane each where lanes are followed."""
         if isinstance(x, list):
             return [self.rows(each, at) for each in x]
-        return self.of(x)[at].each(lambda v: v, np.arange(len(at)) if self.following else None)
+        found = self.of(x)[at]
+        found.lane = np.arange(len(at)) if self.following else None
+        return found
 
     def blank(self, like: Any, shape: tuple[int, ...]) -> Any:
         """Zeros of the same kind."""
@@ -159,17 +167,13 @@ class Choices(Decisions):
 
     def settled(self, x: Any, *others: Any) -> Number:
         """With the symbols that others have, the rest in its error: what a loop carries on, or it drags on all of them."""
-        known = {name for other in others for name in self.of(other).slopes}
+        known = {name for other in others for name in self.of(other).names}
         return self.of(x).absorbed(tuple(known))
 
     def in_lanes(self, x: Any, like: Any) -> Number:
         """A number of the whole case for each row of `like`: what is decided of it is decided lane by lane, both ways."""
         x, like = self.of(x), self.of(like)
-
-        def each(a: Any) -> Any:
-            return np.broadcast_to(a, like.shape)
-
-        return Number(self, each(x.value), each(x.error), {k: each(slope) for k, slope in x.slopes.items()}, like.lane)
+        return Number.of_rows(self, shaped(x.rows, like.shape), x.names, like.lane)
 
     def surely(self, truth: Any) -> bool:
         """Whether something holds for all rows, whatever is decided."""
@@ -178,14 +182,11 @@ class Choices(Decisions):
     def replaced(self, x: Any, where: Any, by: Any) -> Number:
         """With other rows at some places."""
         x, by = self.of(x), self.of(by)
-
-        def put(old: Any, new: Any) -> Any:
-            result = np.array(np.broadcast_to(old, x.shape))
-            result[where] = new
-            return result
-
-        slopes = {k: put(a, b) for k, a, b in self.pairs(x, by)}
-        return Number(self, put(x.value, by.value), put(x.error, by.error), slopes, x.lane)
+        names = all_of(x.names, by.names)
+        rows = np.array(over_symbols(x.rows, x.names, names))
+        for row, new in zip(rows, over_symbols(by.rows, by.names, names), strict=True):
+            row[where] = new
+        return Number.of_rows(self, rows, names, x.lane)
 
     def spread(self, x: Any, where: Any, count: int, nothing: float) -> Any:
         """Rows at some of `count` places, `nothing` elsewhere; places are lanes. What is decided are arrays."""

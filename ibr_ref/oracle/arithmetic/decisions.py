@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.array_types import Bools, Ints
-from ibr_ref.oracle.arithmetic.number import Number, Truth, slope
+from ibr_ref.affine.rows import SLOPES
+from ibr_ref.array_types import Bools, Floats, Ints
+from ibr_ref.oracle.arithmetic.number import Number, Truth
+from ibr_ref.oracle.arithmetic.symbols import all_of, flat, over_symbols, together, united
 
 MOST_DECISIONS = 48
 """Open decisions on one path of the program; beyond, the lane is lost."""
@@ -34,12 +36,14 @@ class Decisions:
         """The lanes that operands share."""
         return next((x.lane for x in operands if x.lane is not None), None)
 
-    @staticmethod
-    def pairs(a: Number, b: Number) -> list[tuple[str, Any, Any]]:
-        """Slopes of two numbers along each symbol that either has."""
-        if not b.slopes:
-            return [(k, s, 0.0) for k, s in a.slopes.items()]
-        return [(k, a.slopes.get(k, 0.0), b.slopes.get(k, 0.0)) for k in {**a.slopes, **b.slopes}]
+    def combined(self, operation: Callable[..., Floats], a: Number, b: Number, *arguments: Any) -> Number:
+        """What a compiled operation on two numbers gives."""
+        shape = together(a.shape, b.shape)
+        names, at_a, at_b = united(a.names, b.names)
+        rows = operation(flat(a.rows, shape), flat(b.rows, shape), at_a, at_b, *arguments)
+        if len(shape) != 1:
+            rows = rows.reshape(len(rows), *shape)
+        return Number.of_rows(self, rows, names[: len(rows) - SLOPES], a.lane if a.lane is not None else b.lane)
 
     def begin(self, origin: Ints, taken: Any = None, known: Any = None) -> None:
         """Start the program on lanes; `known` outcomes of each are given."""
@@ -116,9 +120,6 @@ def joined(parts: list[Any]) -> Any:
     if not isinstance(parts[0], Number):
         return np.concatenate(parts)
 
-    def column(get: Callable[[Number], Any]) -> Any:
-        return np.concatenate([np.broadcast_to(get(p), p.shape) for p in parts])
-
-    names = {name: None for part in parts for name in part.slopes}
-    slopes = {k: column(slope(k)) for k in names}
-    return Number(parts[0].ops, column(lambda p: p.value), column(lambda p: p.error), slopes)
+    names = all_of(*(part.names for part in parts))
+    rows = np.concatenate([over_symbols(part.rows, part.names, names) for part in parts], axis=1)
+    return Number.of_rows(parts[0].ops, rows, names, None)

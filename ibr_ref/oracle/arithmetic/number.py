@@ -13,12 +13,14 @@ Both speak NumPy (NEP 13 and NEP 18), so that a program is written once, in NumP
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ibr_ref.array_types import Bools
+from ibr_ref.affine import pairs
+from ibr_ref.affine.rows import DEVIATION, ERROR, EXACT, SLOPES, VALUE
+from ibr_ref.array_types import Bools, Floats
+from ibr_ref.oracle.arithmetic.symbols import shaped, together
 
 if TYPE_CHECKING:
     from ibr_ref.oracle.arithmetic.bounds import Bounds
@@ -38,42 +40,77 @@ class _Speaks:
 
 
 class Number(_Speaks):
-    """`value`, `error` and each slope broadcast; `lane` (n,) says which run each row belongs to (None: to all)."""
+    """`rows` (3 + K, ...): value, error, deviation (how far a legal number may be off) and the slopes along `names`.
 
-    __slots__ = ("_deviation", "error", "lane", "ops", "slopes", "value")
+    `lane` (n,) says which run each row belongs to (None: to all).
+    """
+
+    __slots__ = ("lane", "names", "ops", "rows")
     __array_priority__ = 1000
 
     def __init__(
         self, ops: Any, value: Any, error: Any = 0.0, slopes: dict[str, Any] | None = None, lane: Any = None
     ) -> None:
-        self.ops, self.value, self.lane = ops, np.asarray(value, np.float64), lane
-        self.error, self.slopes = np.asarray(error, np.float64), slopes or {}
-        self._deviation: Any = None
+        """Of a value, and of an error and slopes that broadcast with it."""
+        value, error = np.asarray(value, np.float64), np.asarray(error, np.float64)
+        self.ops, self.lane, self.names = ops, lane, tuple(slopes) if slopes else ()
+        shape = together(value.shape, error.shape)
+        self.rows = np.empty((SLOPES + len(self.names), *shape))
+        self.rows[VALUE], self.rows[ERROR], self.rows[DEVIATION] = value, error, error
+        if slopes:
+            for k, slope in enumerate(slopes.values(), SLOPES):
+                self.rows[k] = slope
+            self._deviate()
+
+    @classmethod
+    def of_rows(cls, ops: Any, rows: Floats, names: tuple[str, ...], lane: Any) -> Number:
+        """Of rows as they are."""
+        result = cls.__new__(cls)
+        result.ops, result.rows, result.names, result.lane = ops, rows, names, lane
+        return result
+
+    def _deviate(self) -> None:
+        """Fills in the deviation; a slope without an end, times nothing, may be anything."""
+        found = self.rows[ERROR]
+        if self.names:
+            found = found + np.abs(self.rows[SLOPES:]).sum(axis=0)
+            found = np.where(np.isnan(found), np.inf, found)
+        self.rows[DEVIATION] = found
+
+    @property
+    def value(self) -> Any:
+        """What the reference has, but for roundings."""
+        return self.rows[VALUE]
+
+    @property
+    def error(self) -> Any:
+        """How far a legal number may be off besides what it owes to symbols."""
+        return self.rows[ERROR]
 
     @property
     def deviation(self) -> Any:
         """How far a legal number may be from the value."""
-        if self._deviation is None:
-            self._deviation = self.error
-            if self.slopes:
-                found = reduce(np.add, [np.abs(s) for s in self.slopes.values()], self.error)
-                self._deviation = np.where(np.isnan(found), np.inf, found)  # a slope without an end, times nothing
-        return self._deviation
+        return self.rows[DEVIATION]
+
+    @property
+    def slopes(self) -> dict[str, Floats]:
+        """Along each symbol."""
+        return dict(zip(self.names, self.rows[SLOPES:], strict=True))
 
     @property
     def low(self) -> Any:
         """The least legal number."""
-        return self.value - self.deviation
+        return self.rows[VALUE] - self.rows[DEVIATION]
 
     @property
     def high(self) -> Any:
         """The largest."""
-        return self.value + self.deviation
+        return self.rows[VALUE] + self.rows[DEVIATION]
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Of the value."""
-        return self.value.shape
+        return self.rows.shape[1:]
 
     def allows(self, found: Any) -> Bools:
         """Whether a port's number is legal; NaN never is, but where the value is."""
@@ -84,28 +121,28 @@ class Number(_Speaks):
 
     def each(self, f: Callable[[Any], Any], lane: Any) -> Number:
         """The same selection of value, error and slopes."""
+        return Number.of_rows(self.ops, np.stack([f(row) for row in self.rows]), self.names, lane)
 
-        def g(x: Any) -> Any:
-            x = np.asarray(x)
-            return f(x if x.shape == self.value.shape else np.broadcast_to(x, self.value.shape))
-
-        return Number(self.ops, g(self.value), g(self.error), {k: g(s) for k, s in self.slopes.items()}, lane)
+    def off_by(self, more: Any) -> Number:
+        """With a larger error."""
+        rows = np.array(shaped(self.rows, together(self.shape, np.shape(more))))
+        rows[ERROR] += more
+        rows[DEVIATION] += more
+        return Number.of_rows(self.ops, rows, self.names, self.lane)
 
     def plus(self, other: Any, sign: float = 1.0) -> Number:
         """The sum or the difference, not rounded."""
-        other = self.ops.of(other)
-        put = np.add if sign > 0.0 else np.subtract
-        slopes = dict(self.slopes)
-        for k, s in other.slopes.items():
-            slopes[k] = put(slopes.get(k, 0.0), s)
-        lane = self.ops.lane(self, other)
-        return Number(self.ops, put(self.value, other.value), self.error + other.error, slopes, lane)
+        return self.ops.combined(pairs.plus, self, self.ops.of(other), sign, EXACT)
 
     def absorbed(self, keep: tuple[str, ...] = ()) -> Number:
         """With its symbols, but those to keep, in its error: what leaves a run, for symbols have names within one only."""
-        kept = {k: s for k, s in self.slopes.items() if k in keep}
-        error = reduce(np.add, [np.abs(s) for k, s in self.slopes.items() if k not in keep], self.error)
-        return Number(self.ops, self.value, error, kept, self.lane)
+        kept = [k for k, name in enumerate(self.names, SLOPES) if name in keep]
+        if len(kept) == len(self.names):
+            return self
+        rows = self.rows[[VALUE, ERROR, DEVIATION, *kept]]
+        gone = [k for k in range(SLOPES, len(self.rows)) if k not in kept]
+        rows[ERROR] += np.abs(self.rows[gone]).sum(axis=0)
+        return Number.of_rows(self.ops, rows, tuple(self.names[k - SLOPES] for k in kept), self.lane)
 
     # --- As NumPy's arrays are ---------------------------------------------------------------------------------------
 
@@ -114,13 +151,15 @@ class Number(_Speaks):
         rows = index[0] if isinstance(index, tuple) else index
         whole = (isinstance(rows, slice) and rows == slice(None)) or rows is Ellipsis
         lane = self.lane if self.lane is None or whole else self.lane[rows]
-        return self.each(lambda x: x[index], lane)
+        if isinstance(index, tuple):
+            return self.each(lambda x: x[index], lane)
+        return Number.of_rows(self.ops, self.rows[:, index], self.names, lane)
 
     def __len__(self) -> int:
-        return len(self.value)
+        return self.rows.shape[1]
 
     def __iter__(self) -> Iterator[Number]:
-        return (self[i] for i in range(len(self.value)))
+        return (self[i] for i in range(len(self)))
 
     @property
     def T(self) -> list[Number]:  # noqa: N802 as NumPy has it
@@ -128,7 +167,7 @@ class Number(_Speaks):
         return [self._component(c) for c in range(self.shape[-1])]
 
     def _component(self, c: int) -> Number:
-        return self.each(lambda x: x[..., c], self.lane)
+        return Number.of_rows(self.ops, self.rows[..., c], self.names, self.lane)
 
     def reshape(self, *shape: Any) -> Number:
         """Of numbers of the whole case."""
@@ -232,7 +271,7 @@ class Truth(_Speaks):
     @property
     def shape(self) -> tuple[int, ...]:
         """Of the lanes."""
-        return np.broadcast_shapes(self.may.shape, self.must.shape)
+        return together(self.may.shape, self.must.shape)
 
     def decided(self) -> Bools:
         """The outcome of each lane on this path: the same however often it is asked for."""
@@ -287,8 +326,3 @@ def may_and_must(condition: Any) -> tuple[Bools, Bools]:
     ends = (condition.may, condition.must) if isinstance(condition, Truth) else (condition, condition)
     may, must = (np.asarray(end, np.bool_) for end in ends)
     return may, must
-
-
-def slope(symbol: str) -> Callable[[Number], Any]:
-    """What gives a number's slope along a symbol."""
-    return lambda x: x.slopes.get(symbol, 0.0)

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.oracle.arithmetic.number import Number, Truth, slope
+from ibr_ref.oracle.arithmetic.number import Number, Truth
+from ibr_ref.oracle.arithmetic.symbols import all_of, over_symbols
 
 
 def _where(ops: Any, condition: Any, a: Any, b: Any) -> Any:
@@ -33,13 +34,10 @@ def _column(parts: Any, put: Callable[..., Any], axis: int) -> Number:
     """Several numbers in one, side by side or one after the other."""
     ops = next(x.ops for x in parts if isinstance(x, Number))
     numbers = [ops.of(x) for x in parts]
-    names = {name: None for x in numbers for name in x.slopes}
-
-    def column(get: Callable[[Number], Any]) -> Any:
-        return put([np.broadcast_to(get(x), x.shape) for x in numbers], axis=axis)
-
-    slopes = {k: column(slope(k)) for k in names}
-    return Number(ops, column(lambda x: x.value), column(lambda x: x.error), slopes, ops.lane(*numbers))
+    names = all_of(*(x.names for x in numbers))
+    rows = [over_symbols(x.rows, x.names, names) for x in numbers]
+    found = put(rows, axis=axis + 1 if axis >= 0 else axis)
+    return Number.of_rows(ops, found, names, ops.lane(*numbers))
 
 
 def _roll(ops: Any, x: Any, shift: int, axis: int = 0) -> Any:

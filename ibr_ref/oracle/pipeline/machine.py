@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Ints
 from ibr_ref.oracle.accept.coverage import RASTER
 from ibr_ref.oracle.accept.fetch import Texture
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.pipeline.texture import below_highest, fetch, texel_position
 
 SETUP_QUOTIENTS, SETUP_OPERATIONS = 2.0, 5.0
@@ -45,7 +46,7 @@ class Machine(Bounds):
             if not np.any(texels.deviation):
                 return found
             off = self.fetch(np.array(np.broadcast_to(texels.deviation, texels.shape)), u, v, repeat).high
-            return Number(self, found.value, found.error + off, found.slopes, found.lane)
+            return found.off_by(off)
         texture = self._texture(texels, repeat)
         height, width = texture.texels.shape[:2]
         return fetch(self, texture, self._position(self.of(u), width), self._position(self.of(v), height))
@@ -60,8 +61,7 @@ class Machine(Bounds):
 
     def border(self, x: Any, sides: float = 1.0) -> Number:
         """What may be off by the borders that devices give to splats, as many."""
-        x = self.of(x)
-        return Number(self, x.value, x.error + sides * self.device.splat_border, x.slopes, x.lane)
+        return self.of(x).off_by(sides * self.device.splat_border)
 
     def flat_depth(self, depth: Any) -> Number:
         """The depth of a primitive that has one, as the depth buffer holds it.
@@ -73,12 +73,12 @@ class Machine(Bounds):
             return self.rounded(x, 1.0)
         units = SETUP_QUOTIENTS * device.quotient + SETUP_OPERATIONS * device.operation
         size = 1.0 if device.minus_one else np.abs(x.value)
-        return Number(self, x.value, x.error + units * UNIT * size + device.depth_step, x.slopes, x.lane)
+        return x.off_by(units * UNIT * size + device.depth_step)
 
     def halfway(self, a: Any, b: Any) -> Number:
         """(a + b)/2 not rounded: whether -w <= 2 z - w <= w is whether 0 <= z <= w."""
         between = self.of(a).plus(b)
-        return between.each(lambda x: 0.5 * x, between.lane)
+        return Number.of_rows(self, 0.5 * between.rows, between.names, between.lane)
 
     def _texture(self, texels: Any, repeat: bool) -> Texture:
         key = texels.__array_interface__["data"][0], texels.shape, texels.strides, repeat

@@ -13,13 +13,14 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept import borders, coverage
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.whole import Whole, whole
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 
 EDGE_ROUNDINGS = 9.0
 """Of a product in an edge function, relative to that product, besides one quotient. As (x_b - x_a)(y - y_a) - ...: two
@@ -146,21 +147,13 @@ def _wholes(program: Any, polygons: Faces, unclipped: Faces, device: Device) -> 
 
 def _same(corners: list[Any], before: list[Any]) -> bool:
     """Whether clipping left a polygon as it was."""
-    return len(corners) == len(before) and all(map(np.array_equal, map(_value, corners), map(_value, before)))
+    same = (np.array_equal(a.value, b.value) for a, b in zip(corners, before, strict=False))
+    return len(corners) == len(before) and all(same)
 
 
 def _clip(corners: list[Any]) -> tuple[Floats, Floats]:
     """(m, 4) clip coordinates and how far they may be off."""
-    clip, error = (np.stack([np.broadcast_to(get(c), c.shape)[:4] for c in corners]) for get in (_value, _deviation))
-    return clip, error
-
-
-def _value(corner: Number) -> Floats:
-    return corner.value
-
-
-def _deviation(corner: Number) -> Floats:
-    return np.asarray(corner.deviation)
+    return np.stack([c.value[:4] for c in corners]), np.stack([c.deviation[:4] for c in corners])
 
 
 def _pieces(

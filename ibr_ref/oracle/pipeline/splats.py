@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.borders import CROSSING
 from ibr_ref.oracle.accept.winners import winners
 from ibr_ref.oracle.arithmetic.number import Number, may_and_must
-from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.programs.splatting.raster import Fragments
 
 CHUNK = 1 << 21

@@ -6,17 +6,18 @@ from functools import reduce
 
 import numpy as np
 
+from ibr_ref.affine.rows import SLOPES, UNIT
 from ibr_ref.array_types import Ints
 from ibr_ref.oracle.accept.fetch import Texture, filter_error, lerp, spread_around
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import UNIT
+from ibr_ref.oracle.arithmetic.symbols import all_of, over_symbols
 
 
 def texel_position(ops: Bounds, coordinate: Number, size: int) -> Number:
     """Where a coordinate lies, in texels from the first one's centre, with the rounding of weights."""
     x = ops.subtract(ops.multiply(coordinate, float(size)), 0.5)
-    return Number(ops, x.value, x.error + ops.device.weight_step, x.slopes, x.lane)
+    return x.off_by(ops.device.weight_step)
 
 
 def fetch(ops: Bounds, texture: Texture, x: Number, y: Number) -> Number:
@@ -30,7 +31,11 @@ def fetch(ops: Bounds, texture: Texture, x: Number, y: Number) -> Number:
     value = lerp(lerp(t00, t10, f), lerp(t01, t11, f), g)
     error = np.abs(along) * wide(x.error + 0.0 * at_x) + np.abs(down) * wide(y.error + 0.0 * at_y)
     error = error + twist * wide(off_x * off_y)
-    slopes = {k: along * wide(s + 0.0 * at_x) + down * wide(t + 0.0 * at_y) for k, s, t in ops.pairs(x, y)}
+    names = all_of(x.names, y.names)
+    ways = (over_symbols(c.rows, c.names, names)[SLOPES:] for c in (x, y))
+    slopes = {
+        k: along * wide(s + 0.0 * at_x) + down * wide(t + 0.0 * at_y) for k, s, t in zip(names, *ways, strict=True)
+    }
     largest = reduce(np.maximum, [np.abs(t) for t in (t00, t10, t01, t11)])
     cut = (np.floor(at_x - off_x) != np.floor(at_x + off_x)) | (np.floor(at_y - off_y) != np.floor(at_y + off_y))
     if cut.any():

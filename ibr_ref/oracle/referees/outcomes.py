@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import UNIT
 
 
 def judged(element: Ints, agrees: Sequence[Bools], count: int) -> tuple[Bools, Any]:
@@ -50,4 +50,4 @@ def converted(ops: Bounds, values: Floats) -> Number:
     """
     number = stored(ops, values)
     again = 2.0 * ops.device.quotient * UNIT * np.abs(number.value)
-    return Number(ops, number.value, number.error + np.where(number.error > 0.0, again, 0.0))
+    return number.off_by(np.where(number.error > 0.0, again, 0.0))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ibr_ref.oracle.device import PROFILES, UNIT
+from ibr_ref.affine.rows import UNIT
+from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.pipeline.splats import recut
 from ibr_ref.oracle.referees.splatting.model import Model
 from tests.oracle.splatting.judged import Arrays, case, reference, stages

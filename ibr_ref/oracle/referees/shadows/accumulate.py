@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.bounded import Bounded
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.referees.shadows.model import Model
 
 

@@ -13,12 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Floats, Ints
 from ibr_ref.oracle.accept import borders
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import RASTER
 from ibr_ref.oracle.accept.whole import Whole, whole
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.programs.shadows.raster import FAR, NEAR
 
 CROSSING_ROUNDINGS = 5.0

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import Fragments
 from ibr_ref.oracle.accept.winners import Winners
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.programs.shadows.raster import Raster
 from ibr_ref.oracle.referees.shadows.drawing import Pass, names_of, pixels_of
 from ibr_ref.oracle.referees.shadows.model import Model

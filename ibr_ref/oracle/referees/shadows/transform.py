@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 
 
 def gamma(device: Device, operations: float, quotients: float = 0.0) -> float:

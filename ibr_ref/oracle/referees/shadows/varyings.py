@@ -18,12 +18,13 @@ from functools import cached_property
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.borders import Cut, Piece
 from ibr_ref.oracle.accept.bounded import Bounded, exact
 from ibr_ref.oracle.accept.coverage import Fragments, snapped
 from ibr_ref.oracle.accept.whole import Whole
-from ibr_ref.oracle.device import UNIT, Device
+from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.referees.shadows.transform import gamma
 
 

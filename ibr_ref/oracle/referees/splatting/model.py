@@ -169,9 +169,10 @@ class Model:
         turn[order] = np.arange(len(order)) - np.searchsorted(vertex[order], vertex[order])
         some = [np.flatnonzero(turn == k) for k in range(turn.max(initial=0) + 1)]
         branches = [self._branch(len(points), vertex[which], color[which]) for which in some]
+        anything = np.zeros((len(points), 1))
         for vertices in lost:
-            branches[0].color.error[vertices] = np.inf
-        return branches
+            anything[vertices] = np.inf
+        return [Branch(branches[0].color.off_by(anything), branches[0].legal), *branches[1:]]
 
     def _lit(self, number: int, some: Table, world: list[Number]) -> tuple[Ints, Number, Ints]:
         """Rows, and colours (n, 3), of points of one image; and the rows that have too many outcomes."""

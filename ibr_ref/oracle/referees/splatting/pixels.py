@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.arithmetic.decisions import joined
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.pipeline.splats import Contest, contest, recut
 from ibr_ref.oracle.programs.splatting import Port as Program

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ibr_ref.affine.rows import TINY, UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import TINY, UNIT
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.outcomes import judged, stored
 from ibr_ref.oracle.referees.reads import fed

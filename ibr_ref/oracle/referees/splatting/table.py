@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.decisions import joined
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.programs.splatting import Port as Program
 from ibr_ref.oracle.programs.splatting.vertex import Texels

@@ -202,7 +202,7 @@ def page_of(pages: Any, index: int, shape: tuple[int, ...]) -> Number:
     shape = (*shape, *number.shape[2:])
     rows, columns = (min(a, b) for a, b in zip(number.shape[:2], shape[:2], strict=True))
     rows = rows if index < len(pages) else 0
-    result = Number(number.ops, np.full(shape, np.nan), np.zeros(shape))
-    result.value[:rows, :columns] = number.value[:rows, :columns]
-    result.error[:rows, :columns] = np.broadcast_to(number.deviation, number.shape)[:rows, :columns]
-    return result
+    value, error = np.full(shape, np.nan), np.zeros(shape)
+    value[:rows, :columns] = number.value[:rows, :columns]
+    error[:rows, :columns] = number.deviation[:rows, :columns]
+    return Number(number.ops, value, error)

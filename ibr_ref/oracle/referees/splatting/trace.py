@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.device import UNIT
 from ibr_ref.oracle.judgement import Handed, TraceRow
 from ibr_ref.oracle.pipeline.splats import Contest, contest
 from ibr_ref.oracle.programs.splatting.raster import Fragments, Splats
