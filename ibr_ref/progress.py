@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
@@ -50,9 +52,22 @@ class _Bars:
         self.bars.update(self.part, visible=True, description=description, completed=done, total=total)
 
 
+class _Silent:
+    """Of what is no terminal."""
+
+    def __call__(self, description: str) -> None:
+        pass
+
+    def within(self, description: str, done: int, total: int) -> None:
+        pass
+
+
 @contextmanager
 def progress(steps: int) -> Iterator[Step]:
     """Show a bar of `steps` steps and, while kernels are compiled (a first run), another one that says how far that is."""
+    if not (sys.stderr.isatty() or os.environ.get("FORCE_COLOR")):
+        yield _Silent()  # and whoever reads a pipe need not wait for Rich
+        return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 

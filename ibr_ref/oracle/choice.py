@@ -73,11 +73,8 @@ def _chosen(word: str) -> Sequence[Choice]:
 
         rooms = {name: room.open() for name, room in PROBES.items() if word == PROBE or fnmatchcase(name, word)}
         return [Choice(name, None, room.probe_case) for name, room in rooms.items()]
-    return [
-        Choice(name, None, partial(cases.build, name))
-        for name in cases.names()
-        if word == ALL or fnmatchcase(name, word)
-    ]
+    pattern = "*" if word == ALL else word
+    return [Choice(name, None, partial(cases.build, name)) for name in cases.matching(pattern)]
 
 
 def _own(folder: Path) -> Choice:
