@@ -113,7 +113,17 @@ def _own(
     )
 
 
-_JUDGED_SEARCHES = ("protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone")
+_JUDGED_SEARCHES = (
+    "protruded",
+    "relief",
+    "welsh",
+    "mcguire",
+    "tatarchuk",
+    "cone",
+    "relaxed_cone",
+    "donnelly",
+    "maximum_mipmap",
+)
 
 # fmt: off
 _METHODS = {method.name: method for method in (

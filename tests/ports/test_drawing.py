@@ -76,7 +76,7 @@ def test_from_the_command_line(device: Any, tmp_path: Path) -> None:
     oracle.export(box, tmp_path / "box")
     oracle.export(box, tmp_path / "other")
     document = tmp_path / "other" / "case.json"
-    document.write_text(document.read_text("utf-8").replace('"method": "protruded"', '"method": "donnelly"'), "utf-8")
+    document.write_text(document.read_text("utf-8").replace('"method": "protruded"', '"method": "exact"'), "utf-8")
 
     def run(case: str) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "-m", "ibr_ref.ports", str(tmp_path / case), str(tmp_path / "port" / case)]
@@ -89,8 +89,8 @@ def test_from_the_command_line(device: Any, tmp_path: Path) -> None:
     refused = run("other")
     assert refused.returncode == 1
     assert refused.stderr.strip() == (
-        "displacement-box is not ported: method = 'donnelly': the port allows protruded, relief, welsh, mcguire, "
-        "tatarchuk, cone, relaxed_cone"
+        "displacement-box is not ported: method = 'exact': the port allows protruded, relief, welsh, mcguire, "
+        "tatarchuk, cone, relaxed_cone, donnelly, maximum_mipmap"
     )
     assert not (tmp_path / "port" / "other").exists()
     nowhere = run("nowhere")

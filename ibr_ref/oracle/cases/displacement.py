@@ -352,6 +352,25 @@ def relaxed() -> Case:
     return _case("relaxed", "typical", about, scene, _params(method="relaxed_cone", linear_steps=8, binary_steps=6))
 
 
+def distance() -> Case:
+    """Donnelly 2005."""
+    camera = _looking(eye=(0.2, -1.9, 1.2), target=(1.2, -0.4, 0.1), vertical_fov=44.0)
+    scene = Scene(
+        polygons=[_sheared(height_map=_rolling())], camera=camera, light=Light(direction=(0.5, -0.4, 1.0), specular=0.3)
+    )
+    about = "Sphere tracing in a distance map of three dimensions, over smooth hills: steps as far as a ball is empty."
+    return _case("distance", "typical", about, scene, _params(method="donnelly", linear_steps=8, distance_layers=12))
+
+
+def quadtree() -> Case:
+    """Drobot 2009."""
+    camera = _looking(eye=(2.3, -1.5, 1.8), target=(1.3, -0.35, 0.0), vertical_fov=30.0, width=64, height=48)
+    heights = _smooth((9, 13), 0.3, 0.9, 0.1)
+    scene = Scene(polygons=[_sheared(height_map=heights)], camera=camera, light=Light(direction=(0.3, -0.5, 1.0)))
+    about = "A quadtree of maxima over few texels: the first intersection with the bilinear surface itself."
+    return _case("quadtree", "typical", about, scene, _params(method="maximum_mipmap"))
+
+
 def metropolis() -> Case:
     """A picture of real size."""
     camera = _looking(eye=(2.6, -3.14, 2.02), target=(0.0, 0.0, 0.0), vertical_fov=52.0, width=640, height=480)
@@ -366,7 +385,8 @@ CASES: dict[str, Callable[[], Case]] = {
     f"displacement-{make.__name__}": make
     for make in (
         box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing,
-        borders, rim, sliver, relief, parallax, steep, occlusion, cone, relaxed, metropolis,
+        borders, rim, sliver, relief, parallax, steep, occlusion, cone, relaxed, distance, quadtree,
+        metropolis,
     )
 }  # fmt: skip
 """By name."""

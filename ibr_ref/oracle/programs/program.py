@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, ClassVar, Self
 
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
@@ -33,11 +34,13 @@ class Program:
 
     limits: ClassVar[dict[str, Any]] = {}
     """Numbers of the device that a fault takes for others."""
+    taken: ClassVar[dict[str, Any]] = {}
+    """Parameters that a fault takes for others."""
 
     def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
         """The case; `inputs`: what it hands over besides scene and parameters."""
         self.scene = scene
-        self.params = params
+        self.params = replace(params, **self.taken) if self.taken else params
         self.inputs = inputs
         self.do: Any
         self.on(Arithmetic(policy))

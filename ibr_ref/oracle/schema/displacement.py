@@ -8,7 +8,9 @@ from pydantic import Field
 
 from ibr_ref import displacement
 from ibr_ref.displacement.cone_maps import RELAXED, cone_map_of
+from ibr_ref.displacement.distance_maps import distance_map_of
 from ibr_ref.displacement.patch_space import uniforms
+from ibr_ref.displacement.quadtrees import levels_of
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.schema.base import (
     ArrayFile,
@@ -53,7 +55,9 @@ class DisplacementParams(Model):
     """S, samples towards the light; 0: no self-shadow."""
     shadow_bias: float
     """In units of h."""
-    method: Literal["protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone"]
+    method: Literal[
+        "protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly", "maximum_mipmap"
+    ]
     """The search."""
     lod_bias: float = 1.0
     """Level of the mip chain that "mcguire" takes heights from: 0."""
@@ -61,6 +65,8 @@ class DisplacementParams(Model):
     """Steps of "tatarchuk" where the view is straight down."""
     max_steps: int = 50
     """Steps of "tatarchuk" where it is horizontal."""
+    distance_layers: int = 32
+    """Of the `distance_map` of "donnelly"."""
 
 
 class PatchSpace(Model):
@@ -97,6 +103,11 @@ class PolygonFile(Model):
     """None: walls take the colour map."""
     cone_map: ArrayFile | None = None
     """Of searches by cones alone."""
+    distance_map: ArrayFile | None = None
+    """Of "donnelly" alone: (layers, rows, columns), a texture of three dimensions; layer 0 is the top."""
+    quadtree: tuple[ArrayFile, ...] | None = None
+    """Of "maximum_mipmap" alone: the largest height of each cell between four texel centres, then of two by two of them, and
+    so on up to a single one."""
     patch_space: PatchSpace
 
 
@@ -125,19 +136,21 @@ def _describe(case: Case, inputs: Inputs) -> tuple[DisplacementParams, Displacem
     params = DisplacementParams(**values(DisplacementParams, case.params))
     if params.method == "mcguire" and params.lod_bias != 0.0:
         raise reject("lod_bias", params.lod_bias, LEVEL)
-    return params, _scene(case.scene, params.method, inputs)
+    return params, _scene(case.scene, params, inputs)
 
 
-def _scene(scene: displacement.Scene, method: str, inputs: Inputs) -> DisplacementScene:
+def _scene(scene: displacement.Scene, params: DisplacementParams, inputs: Inputs) -> DisplacementScene:
     return DisplacementScene(
         camera=describe_camera(scene.camera),
         light=describe_light(scene.light),
         background=numbers(scene.background),
-        polygons=tuple(_polygon(scene, i, polygon, method, inputs) for i, polygon in enumerate(scene.polygons)),
+        polygons=tuple(_polygon(scene, i, polygon, params, inputs) for i, polygon in enumerate(scene.polygons)),
     )
 
 
-def _polygon(scene: displacement.Scene, index: int, polygon: BasePolygon, method: str, inputs: Inputs) -> PolygonFile:
+def _polygon(
+    scene: displacement.Scene, index: int, polygon: BasePolygon, params: DisplacementParams, inputs: Inputs
+) -> PolygonFile:
     stem = f"polygon{index}"
     optional = {
         "normal_map": (polygon.normal_map, "n = 2 c - 1 in the tangent frame, normalized after the bilinear fetch"),
@@ -158,7 +171,9 @@ def _polygon(scene: displacement.Scene, index: int, polygon: BasePolygon, method
             name: None if map_ is None else inputs.texture(f"{stem}.{name}", map_, meaning)
             for name, (map_, meaning) in optional.items()
         },
-        cone_map=_cones(f"{stem}.cone_map", polygon, method, inputs),
+        cone_map=_cones(f"{stem}.cone_map", polygon, params.method, inputs),
+        distance_map=_distances(f"{stem}.distance_map", polygon, params, inputs),
+        quadtree=_quadtree(f"{stem}.quadtree", polygon, params.method, inputs),
         patch_space=PatchSpace(
             axes=numbers(constants.axes),
             rows=numbers(constants.rows),
@@ -174,6 +189,20 @@ def _cones(stem: str, polygon: BasePolygon, method: str, inputs: Inputs) -> Arra
         return None
     meaning = "radius in (u, v) per height of the cone over each texel; filtered as the height map is"
     return inputs.array(stem, cone_map_of(polygon, method), meaning)
+
+
+def _distances(stem: str, polygon: BasePolygon, params: DisplacementParams, inputs: Inputs) -> ArrayFile | None:
+    if params.method != "donnelly":
+        return None
+    meaning = "distance to the nearest solid voxel in (u, v, d); trilinear, wrapped as the height map is, clamped in d"
+    return inputs.array(stem, distance_map_of(polygon, params.distance_layers), meaning)
+
+
+def _quadtree(stem: str, polygon: BasePolygon, method: str, inputs: Inputs) -> tuple[ArrayFile, ...] | None:
+    if method != "maximum_mipmap":
+        return None
+    meaning = "the largest height of each node"
+    return tuple(inputs.array(f"{stem}{i}", level, meaning) for i, level in enumerate(levels_of(polygon)))
 
 
 def _build(

@@ -15,7 +15,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ibr_ref.ports.displacement_arrays import stage_arrays
+from ibr_ref.ports.displacement_arrays import below_one_another, stage_arrays
 from ibr_ref.ports.glsl import gl
 from ibr_ref.ports.glsl.patch_frame import PatchFrame
 
@@ -28,7 +28,7 @@ STAGES = {
     "albedo": (4, "f4"),
     "normal": (4, "f4"),
 }
-BELOW = ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone")
+BELOW = ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly", "maximum_mipmap")
 """Searches below the polygon."""
 MISS_DEPTH = np.float32(0.99999994)
 """What a discarded fragment writes as depth when stages are kept: behind any hit, in front of the cleared buffer."""
@@ -41,7 +41,7 @@ class _Draw:
     vao: moderngl.VertexArray
     uniforms: moderngl.Buffer
     block: bytes
-    textures: list[moderngl.Texture]
+    textures: list[moderngl.Texture | moderngl.Texture3D]
     owned: list[Any]
 
 
@@ -230,8 +230,8 @@ def _quad_indices(count: int) -> np.ndarray:
     return np.asarray(4 * np.arange(count)[:, None] + np.array([0, 1, 2, 0, 2, 3]), np.int32)
 
 
-def _textures(device: gl.Device, polygon: Any, variant: _Variant) -> list[moderngl.Texture]:
-    """Height (always 32-bit float), colour, normal and facade map, and of cones theirs, by texture unit.
+def _textures(device: gl.Device, polygon: Any, variant: _Variant) -> list[moderngl.Texture | moderngl.Texture3D]:
+    """Height (always 32-bit float), colour, normal and facade map, what a search has besides, by texture unit.
 
     For the timed variant colours that are multiples of 1/255 are kept as 8-bit textures, as an application would.
     """
@@ -249,6 +249,12 @@ def _textures(device: gl.Device, polygon: Any, variant: _Variant) -> list[modern
     cones = getattr(polygon, "cone_map", None)
     if cones is not None:
         textures.append(gl.upload(device, cones, wrap=repeat))
+    distances = getattr(polygon, "distance_map", None)
+    if distances is not None:
+        textures.append(gl.upload_volume(device, distances, wrap=repeat))
+    levels = getattr(polygon, "quadtree", None)
+    if levels is not None:
+        textures.append(gl.upload(device, below_one_another(levels), filtered=False))
     return textures
 
 

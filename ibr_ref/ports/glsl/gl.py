@@ -115,6 +115,19 @@ def upload(
     return texture
 
 
+def upload_volume(device: Device, image: np.ndarray, *, wrap: str = "clamp") -> moderngl.Texture3D:
+    """A filtered texture of three dimensions, (layers, rows, columns), of 32-bit floats; clamped between the layers."""
+    device.use()
+    layers, rows, columns = image.shape
+    texture = device.ctx.texture3d(
+        (columns, rows, layers), 1, image.astype(np.float32).tobytes(), alignment=1, dtype="f4"
+    )
+    texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+    texture.repeat_x = texture.repeat_y = wrap == "repeat"
+    texture.repeat_z = False
+    return texture
+
+
 @dataclass
 class Target:
     """A frame buffer: named colour attachments and one 32-bit float depth texture."""

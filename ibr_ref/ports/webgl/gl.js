@@ -8,6 +8,7 @@ export class Device {
         for (const name of ["EXT_color_buffer_float", "OES_texture_float_linear"])
             if (!this.gl.getExtension(name)) throw new Error(`WebGL 2 without ${name}`);
         this.programs = new Map();
+        this.volumes = new Set();
     }
 
     /** Vendor and renderer. */
@@ -55,7 +56,7 @@ export class Device {
         const {gl} = this;
         Object.entries(textures).forEach(([name, texture], unit) => {
             gl.activeTexture(gl.TEXTURE0 + unit);
-            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.bindTexture(this.volumes.has(texture) ? gl.TEXTURE_3D : gl.TEXTURE_2D, texture);
             this.uniform(program, name, unit, "int");
         });
     }
@@ -69,6 +70,21 @@ export class Device {
         if (channels === 3) for (let i = 0; i < width * height; i++) texels.set(data.subarray(3 * i, 3 * i + 3), 4 * i);
         const format = channels === 1 ? gl.RED : gl.RGBA;
         gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, format, gl.FLOAT, texels);
+        return texture;
+    }
+
+    /** A filtered texture of three dimensions, {shape: [layers, rows, columns], data}; clamped between the layers. */
+    uploadVolume({shape, data}, {repeat = false} = {}) {
+        const {gl} = this;
+        const [depth, height, width] = shape;
+        const texture = gl.createTexture();
+        this.volumes.add(texture);
+        gl.bindTexture(gl.TEXTURE_3D, texture);
+        gl.texStorage3D(gl.TEXTURE_3D, 1, gl.R32F, width, height, depth);
+        const wrap = repeat ? gl.REPEAT : gl.CLAMP_TO_EDGE;
+        const kinds = {MIN_FILTER: gl.LINEAR, MAG_FILTER: gl.LINEAR, WRAP_S: wrap, WRAP_T: wrap, WRAP_R: gl.CLAMP_TO_EDGE};
+        for (const [name, kind] of Object.entries(kinds)) gl.texParameteri(gl.TEXTURE_3D, gl["TEXTURE_" + name], kind);
+        gl.texSubImage3D(gl.TEXTURE_3D, 0, 0, 0, 0, width, height, depth, gl.RED, gl.FLOAT, Float32Array.from(data));
         return texture;
     }
 
@@ -150,7 +166,7 @@ async function source(words) {
     return text;
 }
 
-const HEAD = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp usampler2D;\n";
+const HEAD = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp sampler3D;\nprecision highp usampler2D;\n";
 
 /** GLSL 4.50 as these ports have it in GLSL ES 3.00: no bindings, no locations between the stages, no noperspective (w is 1). */
 function embedded(source, vertex) {

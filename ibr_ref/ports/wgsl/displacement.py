@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import wgpu
 
-from ibr_ref.ports.displacement_arrays import stage_arrays
+from ibr_ref.ports.displacement_arrays import below_one_another, stage_arrays
 from ibr_ref.ports.frame import Frame
 from ibr_ref.ports.glsl.patch_frame import PatchFrame
 from ibr_ref.ports.wgsl import gpu
@@ -26,7 +26,17 @@ PASSES = {
     "looks": (("albedo", "rgba32uint"), ("normal", "rgba32uint")),
 }
 """By entry point: attachments and their kinds."""
-SEARCHES = ("protruded", "relief", "mcguire", "tatarchuk", "welsh", "cone", "relaxed_cone")
+SEARCHES = (
+    "protruded",
+    "relief",
+    "mcguire",
+    "tatarchuk",
+    "welsh",
+    "cone",
+    "relaxed_cone",
+    "donnelly",
+    "maximum_mipmap",
+)
 """By their numbers in the shader."""
 CORNERS = gpu.Vertices(16, [("float32x3", 0), ("sint32", 12)])
 
@@ -81,8 +91,7 @@ class Port:
         maps = [polygon.height_map, polygon.color_map, polygon.normal_map, polygon.facade_map]
         resources: dict[int, Any] = {0: gpu.buffer(device, frame.uniforms(number), wgpu.BufferUsage.UNIFORM)}
         resources |= {i: gpu.upload(device, unused if m is None else m) for i, m in enumerate(maps, 1)}
-        cones = getattr(polygon, "cone_map", None)
-        resources[7] = gpu.upload(device, unused if cones is None else cones)
+        resources[7] = gpu.upload(device, _search_map(polygon, unused))
         quads = 4 * np.arange(len(faces))[:, None] + np.array([0, 1, 2, 0, 2, 3])
         return _Draw(
             code=_constants(frame, params)
@@ -122,6 +131,16 @@ class Port:
         return {"vertex.clip": np.concatenate(clips), "vertex.patch": np.concatenate(points)}
 
 
+def _search_map(polygon: Any, unused: np.ndarray) -> np.ndarray:
+    """What the search has besides heights: ratios of cones, layers of distances or levels of a quadtree, in one picture."""
+    cones, distances, levels = (getattr(polygon, name, None) for name in ("cone_map", "distance_map", "quadtree"))
+    if levels is not None:
+        return below_one_another(levels)
+    if distances is not None:
+        return np.vstack(distances)
+    return unused if cones is None else cones
+
+
 def _constants(frame: PatchFrame, params: Any) -> str:
     """`params` and the shape of the scene."""
     polygon, above = frame.polygon, params.method == "protruded"
@@ -137,6 +156,7 @@ def _constants(frame: PatchFrame, params: Any) -> str:
             "HAS_FACADE_MAP": polygon.facade_map is not None and above,
             "POLYGON_DEPTH": params.depth == "polygon" or params.method == "welsh",
             "FLOOR": 0.0 if above or params.method == "welsh" else -1.0,
+            "DISTANCE_LAYERS": int(params.distance_layers),
             "MIN_STEPS": int(params.min_steps),
             "MAX_STEPS": int(params.max_steps),
             "SEARCH": SEARCHES.index(params.method),

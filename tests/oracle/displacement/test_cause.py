@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -55,6 +58,30 @@ def test_the_bug_is_named(mutant: str) -> None:
     name = "displacement-slope"
     port = next(m.port for m in MUTANTS if m.name == mutant)
     assert mutant in named(name, draw(name, Policy(), port))
+
+
+@pytest.mark.parametrize(
+    ("name", "taken"),
+    [
+        ("displacement-slope", {"steep_threshold": 0.1}),
+        ("displacement-slope", {"linear_steps": 20}),
+        ("displacement-slope", {"shadow_steps": 14}),
+        ("displacement-occlusion", {"max_steps": 16}),
+        ("displacement-distance", {"distance_layers": 24}),
+    ],
+)
+def test_a_right_port_with_another_parameter_is_named_so(name: str, taken: dict[str, Any]) -> None:
+    what = case(name)
+    arrays = Port(what.scene, replace(what.params, **taken), Policy(), {}).render()
+    found = named(name, arrays)
+    (field, value), *_ = taken.items()
+    assert found == [f"{field} = {value}"]
+
+
+def test_nor_is_one_that_no_suspect_has() -> None:
+    what = case("displacement-slope")
+    arrays = Port(what.scene, replace(what.params, linear_steps=17), Policy(), {}).render()
+    assert named("displacement-slope", arrays) == []
 
 
 class _Unknown(Port):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import reduce
+from typing import ClassVar
 
 import numpy as np
 
@@ -38,6 +39,9 @@ class Hits:
 
 class March(Vertex, TextureUnit):
     """Linear search, binary search, steepness."""
+
+    along_ray: ClassVar[bool] = True
+    """Whether indices say how far along the ray a hit is, and not what was fetched."""
 
     def march(self, patch: Patch, fragments: Fragments) -> Hits:
         """The hits of one patch's fragments."""

@@ -15,6 +15,7 @@ from ibr_ref.oracle.programs.displacement.case import Floats, Ints, Patch, Vecto
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.oracle.programs.displacement.raster import Fragments
+from ibr_ref.oracle.programs.displacement.searches.below import Sunken
 from ibr_ref.oracle.programs.displacement.vertex import Quad
 
 # --- Other orders of operations --------------------------------------------------------------------------------------
@@ -32,7 +33,7 @@ class _FromFragment(Port):
     """Positions are C + v (h - C_h)/v_h, without the end points."""
 
     def rays(self, patch: Patch, point: Vector) -> Rays:
-        if self.params.interval == "volume":
+        if self.params.interval == "volume" or isinstance(self, Sunken):  # below the polygon they are so anyway
             return super().rays(patch, point)
         way = self.towards(patch.eye, point)
         slope = [self.do.divide(x, way[2]) for x in way]

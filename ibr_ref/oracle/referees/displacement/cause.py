@@ -9,6 +9,8 @@ from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.displacement import MUTANTS
+from ibr_ref.oracle.faults.kinds import Mutant
+from ibr_ref.oracle.faults.taken import suspects
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.programs.displacement.raster import Raster
@@ -19,18 +21,32 @@ from ibr_ref.oracle.referees.displacement.likely import likely
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.replay import ARRAYS, Port
 from ibr_ref.oracle.referees.displacement.stages import Stages
+from ibr_ref.searches import SEARCHES
 
-FACES = frozenset(dir(Vertex)) | frozenset(dir(Raster))
+FACES = (frozenset(dir(Vertex)) | frozenset(dir(Raster))) - {"taken"}
 """What vertex processing and rasterization call: a program that changes none of it has the right one's fragments."""
+NUMBERS = ("linear_steps", "binary_steps", "steep_threshold", "min_steps", "max_steps", "distance_layers")
+"""Parameters of searches."""
+LIT = ("shadow_steps", "shadow_bias")
+"""Those of self-shadow."""
 
 
 def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
     """The bugs that explain every element of a stage.
 
     Bugs of the stage first, then, where none of them does, those that may hide in it. Of a picture those of all stages whose
-    pictures are like it.
+    pictures are like it. Where no bug does, the right program with another parameter.
     """
     inquiry = _inquiry(case, device, handed)
+    found = _found(case, handed, wrong, inquiry)
+    if found.causes:
+        return found
+    causes = _found(case, handed, wrong, replace(inquiry, mutants=_taken(case))).causes
+    return replace(found, causes=causes)
+
+
+def _found(case: Case, handed: Handed, wrong: Judgement, inquiry: Inquiry) -> Explanation:
+    """Those of the suspects that explain it."""
     if wrong.stage == "image":
         few = likely(case, handed, wrong.wrong, inquiry.mutants)
         return replace(inquiry, mutants=few).causes(wrong, inquiry.arrays)
@@ -42,7 +58,17 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
 
 def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
     """Whether the bug of that name explains every element of a stage; one that there is not explains none."""
-    return _inquiry(case, device, handed).recognizes(wrong, cause)
+    inquiry = _inquiry(case, device, handed)
+    return replace(inquiry, mutants=[*inquiry.mutants, *_taken(case)]).recognizes(wrong, cause)
+
+
+def _taken(case: Case) -> list[Mutant]:
+    """The right program with other parameters, those that the case reads."""
+    reads = SEARCHES[case.params.method].reads
+    stages = {name: "march" for name in NUMBERS if name in reads}
+    if case.params.shadow_steps:
+        stages |= dict.fromkeys(LIT, "shade")
+    return suspects(Program, case.params, stages)
 
 
 def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:

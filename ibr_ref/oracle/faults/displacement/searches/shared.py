@@ -11,7 +11,9 @@ from ibr_ref.oracle.programs.displacement.searches.below import Sunken
 
 SHARED = Bugs("march")
 
-DEEP = ("relief", "mcguire", "tatarchuk", "cone", "relaxed_cone")
+BY_HEIGHTS = ("relief", "mcguire", "tatarchuk", "cone", "relaxed_cone", "maximum_mipmap")
+"""Those that sink, and look at the height map."""
+DEEP = (*BY_HEIGHTS, "donnelly")
 """Those that sink."""
 ALL = (*DEEP, "welsh")
 
@@ -79,7 +81,7 @@ class _Orthogonal(_OtherWay):
         return [self.do.divide(self.do.dot(world, edge), self.do.dot(edge, edge)) for edge in edges]
 
 
-@SHARED.add("heights taken for depths", only=ALL)
+@SHARED.add("heights taken for depths", only=(*BY_HEIGHTS, "welsh"))
 class _Depths(Sunken):
     """The map is read as depths: 1 - H in place of H."""
 
