@@ -6,6 +6,7 @@ registers, with the operations of `sampling.mix` in their order. Each of these i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from llvmlite import ir
@@ -94,7 +95,9 @@ class _Emitter:
         ]
         return [texel for pair in pairs for texel in pair]
 
-    def mixed(self, t00: Any, t10: Any, t01: Any, t11: Any, fx: Any, fy: Any) -> Any:
+    def mixed(self, texels: Sequence[Any], fx: Any, fy: Any) -> Any:
+        """Texels: t00, t10, t01, t11."""
+        t00, t10, t01, t11 = texels
         return self._lerp(self._lerp(t00, t10, fx), self._lerp(t01, t11, fx), fy)
 
     def triple(self, texels: Any, corners: list[Any], lane: int, fx: Any, fy: Any) -> list[Any]:
@@ -106,9 +109,9 @@ class _Emitter:
         pairs = []
         for i in range(2):
             f, g = (self._picked(fraction, fraction, i, i) for fraction in (fx, fy))
-            pairs.append(self.mixed(*(self._pair(texels, both[i]) for both in at), f, g))
+            pairs.append(self.mixed([self._pair(texels, both[i]) for both in at], f, g))
         thirds = [self._both(*(builder.load(builder.gep(texels, [self._plus(j, 2)])) for j in both)) for both in at]
-        return [*self._turned(*pairs), self.mixed(*thirds, fx, fy)]
+        return [*self._turned(*pairs), self.mixed(thirds, fx, fy)]
 
     def _pair(self, array: Any, index: Any) -> Any:
         """Two elements that lie side by side."""
@@ -143,7 +146,7 @@ def _emitted_pairs(typing: Any, texels: Any, upper: Any, lower: Any, fx: Any, fy
         texels, upper, lower, fx, fy, out = e.arguments
         for lane in range(0, LANES, 2):
             top, bottom = (e.beside(texels, [e.index(row, lane), e.index(row, lane + 1)], 0) for row in (upper, lower))
-            e.store(e.mixed(*top, *bottom, e.lanes(fx, lane), e.lanes(fy, lane)), out, lane)
+            e.store(e.mixed([*top, *bottom], e.lanes(fx, lane), e.lanes(fy, lane)), out, lane)
         return context.get_dummy_value()
 
     return types.void(texels, upper, lower, fx, fy, out), emit
@@ -179,10 +182,10 @@ def _emitted_cross(
                 rows.append([builder.add(index, columns) for index in rows[-1]])
             t = [e.beside(texels, row, *pairs) for row, pairs in zip(rows, ((1,), (0, 2), (0, 2), (1,)), strict=True)]
             f, g, f_left, f_right, g_above, g_below = (e.lanes(fraction, lane) for fraction in fractions)
-            e.store(e.mixed(*t[1][0:2], *t[2][0:2], f_left, g), left, lane)
-            e.store(e.mixed(*t[1][2:4], *t[2][2:4], f_right, g), right, lane)
-            e.store(e.mixed(*t[0], *t[1][1:3], f, g_above), above, lane)
-            e.store(e.mixed(*t[2][1:3], *t[3], f, g_below), below, lane)
+            e.store(e.mixed([*t[1][0:2], *t[2][0:2]], f_left, g), left, lane)
+            e.store(e.mixed([*t[1][2:4], *t[2][2:4]], f_right, g), right, lane)
+            e.store(e.mixed([*t[0], *t[1][1:3]], f, g_above), above, lane)
+            e.store(e.mixed([*t[2][1:3], *t[3]], f, g_below), below, lane)
         return context.get_dummy_value()
 
     names = (texels, columns, corner, fx, fy, left_fx, right_fx, above_fy, below_fy, left, right, above, below)
