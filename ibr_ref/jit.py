@@ -38,7 +38,7 @@ from platformdirs import user_cache_path
 
 from ibr_ref.linking import DeviceCompiler, KernelCompiler
 
-__all__ = ["LANES", "compilations", "device", "functions", "kernel", "prange", "routine", "threads"]
+__all__ = ["LANES", "compilations", "device", "functions", "inlined", "kernel", "prange", "routine", "threads"]
 
 config: Any = _config  # its attributes are made at run time
 
@@ -143,7 +143,19 @@ def device(function: Function) -> Function:
     The wrappers that let Python call it would take a fifth of all compilation. Where Python does, as tests do, the call
     goes to another compilation that has them.
     """
-    options = {"error_model": "numpy", "fastmath": False}
+    return _part(function)
+
+
+def inlined(function: Function) -> Function:
+    """The same for a function that its callers are to take in whole: one that loops over several arrays of lanes.
+
+    As a call of its own it would not know that they do not overlap, and compare the ends of every two of them in each wave.
+    """
+    return _part(function, forceinline=True)
+
+
+def _part(function: Function, **options: Any) -> Function:
+    options |= {"error_model": "numpy", "fastmath": False}
     compiled = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, pipeline_class=DeviceCompiler, **options)(function)
     if not config.DISABLE_JIT:
         for_python = cache(lambda: njit(**options)(function))

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ibr_ref.bench import gathers
 from ibr_ref.bench.times import best_and_median
 from ibr_ref.progress import progress
 
@@ -61,6 +62,7 @@ def times(repeat: int) -> list[dict[str, Any]]:
                 best, median = best_and_median(lambda: displacement.render(scene, params, stages=stages), repeat)  # noqa: B023
                 row[f"{key}_best_ms"], row[f"{key}_median_ms"] = best * 1e3, median * 1e3
             fps = PAPER_FPS.get((name, width, params.linear_steps))
+            row |= gathers.beside(scene, params, row["picture_best_ms"] / 1e3)
             row["paper_ms"] = None if fps is None else 1000.0 / fps
             rows.append(row)
     return rows
@@ -75,9 +77,19 @@ def table(rows: list[dict[str, Any]]) -> Any:
 
     table = Table(
         title="Protruded displacement mapping, M = 6: milliseconds a frame, best (median)",
-        caption=f"ibr_ref {ibr_ref.__version__}, {jit.threads()} threads; paper: GeForce 6600GT, section 5",
+        caption=f"ibr_ref {ibr_ref.__version__}, {jit.threads()} threads; paper: GeForce 6600GT, section 5; gathers: "
+        "texels that the method asks for, at the rate of gathers alone from a map of this size",
     )
-    for column in ("scene", "picture", "N", "picture and depth", "all stages", "paper"):
+    for column in (
+        "scene",
+        "picture",
+        "N",
+        "picture and depth",
+        "gathers at their limit",
+        "beside it",
+        "all stages",
+        "paper",
+    ):
         table.add_column(column, justify="left" if column == "scene" else "right")
     for row in rows:
         table.add_row(
@@ -85,6 +97,8 @@ def table(rows: list[dict[str, Any]]) -> Any:
             f"{row['width']} x {row['height']}",
             str(row["linear_steps"]),
             f"{row['picture_best_ms']:.1f} ({row['picture_median_ms']:.1f})",
+            f"{1e-6 * row['gathers']:.1f} M, {row['gathers_ms']:.1f}",
+            f"{row['beside_gathers']:.2f}x",
             f"{row['stages_best_ms']:.1f} ({row['stages_median_ms']:.1f})",
             "" if row["paper_ms"] is None else f"{row['paper_ms']:.1f}",
         )

@@ -230,6 +230,7 @@ def command(
     frames: pictures.Frames = 120,
     video: pictures.Video = None,
     fps: pictures.Fps = 30.0,
+    scheduler: pictures.Scheduler = None,
     depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
@@ -239,7 +240,15 @@ def command(
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
     whole = {"stages": stages, "depth_set": depth_set}
     wanted = pictures.Wanted(
-        out=out, bits=bits, path=path, frames=frames, video=video, fps=fps, fov=described["fov"], whole=whole
+        out=out,
+        bits=bits,
+        path=path,
+        frames=frames,
+        video=video,
+        fps=fps,
+        scheduler=scheduler,
+        fov=described["fov"],
+        whole=whole,
     )
     with progress(3) as step:
         step("reading maps")

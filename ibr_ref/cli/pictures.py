@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +15,7 @@ from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 
 if TYPE_CHECKING:
     from ibr_ref.io import Frame
+    from ibr_ref.io.parts import Draw
     from ibr_ref.progress import Step
     from ibr_ref.scene import Camera
 
@@ -28,6 +30,14 @@ CameraPath = Annotated[
 Frames = Annotated[int, typer.Option(parser=options.whole, help="--path: how many frames.")]
 Video = Annotated[
     Path | None, typer.Option(help="--path: also a video of them, .mp4, .mkv, .webm, .gif; needs ibr_ref[video].")
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS",
+        help="Of a Dask scheduler: frames of a --path, or bands of a TIFF, are drawn by its workers, which need the same "
+        "version of ibr_ref[sweep].",
+    ),
 ]
 Fps = Annotated[float, typer.Option(parser=options.number, help="--video: frames a second.")]
 
@@ -46,6 +56,8 @@ class Wanted:
     fps: float
     fov: float
     """Vertical, degrees, of the cameras of a path that do not say theirs."""
+    scheduler: str | None
+    """Of workers that draw; None: this process draws."""
     whole: dict[str, Any]
     """Options that need a whole picture, by name."""
 
@@ -59,6 +71,10 @@ class Wanted:
         from ibr_ref import io
 
         io.check_image_writable(self.out, self.bits)
+        if self.scheduler is not None and self.path is None and not self.in_bands:
+            raise typer.BadParameter(
+                f"--scheduler: found beside --out {self.out}, allowed: beside --path, or for a TIFF"
+            )
         for name, value in self.whole.items():
             if value and (self.path is not None or self.in_bands):
                 flag, beside = (
@@ -116,19 +132,36 @@ def write(
 
 def _in_bands(wanted: Wanted, scene: Any, render: Callable[..., Frame], step: Step) -> bool:
     from ibr_ref import io
-    from ibr_ref.cli import emptiness
+    from ibr_ref.io.parts import Part
 
     shown = False
-
-    def band(rows: tuple[int, int]) -> Any:
-        nonlocal shown
-        frame = render(scene, rows=rows)
-        shown = shown or emptiness.shows(frame)
-        return frame.color
-
     step("drawing and writing")
-    io.write_poster(wanted.out, band, scene.camera.width, scene.camera.height, wanted.bits, step.within)
+    width, height = scene.camera.width, scene.camera.height
+    with _drawer(wanted, scene, render) as draw:
+        bands = draw(Part(rows=rows) for rows in io.poster_bands(width, height))
+
+        def band(rows: tuple[int, int]) -> Any:
+            nonlocal shown
+            drawn = next(bands)
+            shown = shown or drawn.shown
+            return drawn.color
+
+        io.write_poster(wanted.out, band, width, height, wanted.bits, step.within)
     return shown
+
+
+@contextmanager
+def _drawer(wanted: Wanted, scene: Any, render: Callable[..., Frame]) -> Iterator[Draw]:
+    """What draws parts one after the other: workers, or this process."""
+    if wanted.scheduler is not None:
+        from ibr_ref.sweep.drawing import on_workers
+
+        with on_workers(wanted.scheduler, scene, render) as draw:
+            yield draw
+    else:
+        from ibr_ref.io.parts import drawn
+
+        yield lambda parts: (drawn(scene, render, part) for part in parts)
 
 
 def _film(
@@ -136,7 +169,7 @@ def _film(
 ) -> bool:
     """Frames that are there already are kept, if they are of the same film: the file beside them says of which."""
     from ibr_ref import io
-    from ibr_ref.cli import emptiness
+    from ibr_ref.io.parts import Part
     from ibr_ref.scene.digests import digest_of
 
     assert wanted.path is not None
@@ -146,15 +179,14 @@ def _film(
     files = [wanted.out.with_name(f"{wanted.out.stem}-{i:0{digits}}{wanted.out.suffix}") for i in range(len(cameras))]
     _mark(wanted.out.with_suffix(".film"), digest_of(scene, params, cameras, wanted.bits))
     step("drawing frames")
-    shown = False
-    for i, (file, camera) in enumerate(zip(files, cameras, strict=True)):
-        step.within("frames", i, len(files))
-        if file.exists():
-            shown = True
-            continue
-        frame = render(replace(scene, camera=camera))
-        shown = shown or emptiness.shows(frame)
-        frame.save(file, wanted.bits)
+    missing = [i for i, file in enumerate(files) if not file.exists()]
+    shown = len(missing) < len(files)
+    with _drawer(wanted, scene, render) as draw:
+        step.within("frames", len(files) - len(missing), len(files))
+        for done, (i, drawn) in enumerate(zip(missing, draw(Part(camera=cameras[i]) for i in missing), strict=True)):
+            shown = shown or drawn.shown
+            io.write_image(files[i], drawn.color, wanted.bits)
+            step.within("frames", len(files) - len(missing) + done + 1, len(files))
     if wanted.video is not None:
         step("writing the video")
         io.write_film(wanted.video, files, wanted.fps)
@@ -182,5 +214,6 @@ def goes_with(*view: str) -> dict[str, Beside]:
         **{name: Beside("a camera path has its own cameras", {"path": ABSENT}) for name in view},
         "frames": Beside("it is about a camera path", {"path": GIVEN}),
         "video": Beside("it is about a camera path", {"path": GIVEN}),
+        **always("scheduler"),
         "fps": Beside("it is about a video", {"video": GIVEN}),
     }

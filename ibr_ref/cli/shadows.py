@@ -208,6 +208,7 @@ def command(
     frames: pictures.Frames = 120,
     video: pictures.Video = None,
     fps: pictures.Fps = 30.0,
+    scheduler: pictures.Scheduler = None,
     depth_set: depth_set_options.OneDepthImage = None,
     bits: options.Bits = 8,
     stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
@@ -216,7 +217,9 @@ def command(
 ) -> None:
     """Shadows by image warping (Kang & Ihm 2002) of meshes that move over a floor with steps, under one light or several."""
     whole = {"stages": stages, "report": report, "depth_set": depth_set}
-    wanted = pictures.Wanted(out=out, bits=bits, path=path, frames=frames, video=video, fps=fps, fov=40.0, whole=whole)
+    wanted = pictures.Wanted(
+        out=out, bits=bits, path=path, frames=frames, video=video, fps=fps, scheduler=scheduler, fov=40.0, whole=whole
+    )
     with progress(3) as step:
         step("reading the mesh, preparing maps")
         from ibr_ref import io, shadows

@@ -222,6 +222,7 @@ def command(
     frames: pictures.Frames = 120,
     video: pictures.Video = None,
     fps: pictures.Fps = 30.0,
+    scheduler: pictures.Scheduler = None,
     depth_set: depth_set_options.DepthSet = None,
     point_cloud: depth_set_options.PointCloud = None,
     bits: options.Bits = 8,
@@ -232,7 +233,15 @@ def command(
     """Splatting of reference images with depth (Lee & Park 2006) from a new view: of photographs, files, or a mesh."""
     whole = {"stages": stages, "report": report}
     wanted = pictures.Wanted(
-        out=out, bits=bits, path=path, frames=frames, video=video, fps=fps, fov=described["fov"], whole=whole
+        out=out,
+        bits=bits,
+        path=path,
+        frames=frames,
+        video=video,
+        fps=fps,
+        scheduler=scheduler,
+        fov=described["fov"],
+        whole=whole,
     )
     with progress(3) as step:
         step("reading references")

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.jit import device
+from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.sampling import fetch
 
 
@@ -25,7 +25,14 @@ def sample(repeat, texels, columns, rows, bounded, u, v, d):
     """Whether the sample is at or below the surface; its margin |d - D| (infinite at d = 0 and d = 1); H, 0 outside."""
     if not in_domain(u, v, bounded):
         return False, np.inf, 0.0
-    height = fetch(texels, columns, rows, repeat, u, v)
+    return sampled(fetch(texels, columns, rows, repeat, u, v), bounded, u, v, d)
+
+
+@device
+def sampled(height, bounded, u, v, d):
+    """The same of a height that has been fetched, wherever that was."""
+    if not in_domain(u, v, bounded):
+        return False, np.inf, 0.0
     depth = 1.0 - height
     return d >= depth, (abs(d - depth) if 0.0 < d < 1.0 else np.inf), height
 
@@ -46,6 +53,24 @@ def view_ray(points, pixel, eye):
     if not to_h > 0.0:
         return u, v, 0.0, 0.0, False
     return u, v, (eye[0] - eye[3] * u) / to_h, (eye[1] - eye[3] * v) / to_h, True
+
+
+@device
+def view_rays(points, first, eye, u, v, along_u, along_v):
+    """The same for a wave of pixels from `first` on: how many of them there are, and whether there is any ray.
+
+    NaN where there is none, as the wave's rest has.
+    """
+    pixels = points.shape[1]
+    count, seen = min(LANES, pixels - first), False
+    for lane in range(LANES):
+        u[lane] = v[lane] = along_u[lane] = along_v[lane] = np.nan
+    for lane in range(count):
+        at_u, at_v, to_u, to_v, here = view_ray(points, first + lane, eye)
+        if here:
+            u[lane], v[lane], along_u[lane], along_v[lane] = at_u, at_v, to_u, to_v
+            seen = True
+    return count, seen
 
 
 @device

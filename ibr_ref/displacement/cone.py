@@ -9,41 +9,51 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.below import keep, view_ray
+from ibr_ref.displacement.below import keep, view_rays
 from ibr_ref.displacement.cones import cone_ratios
 from ibr_ref.displacement.sought import Sought
-from ibr_ref.jit import device, kernel, prange
-from ibr_ref.pipeline.sampling import fetch
+from ibr_ref.jit import LANES, device, kernel, prange
+from ibr_ref.pipeline.fetches import fetch_wave
+from ibr_ref.pipeline.waves import lanes
 
 
 @device
-def cone_steps(repeat, texels, ratios, columns, rows, u, v, along_u, along_v, steps):
-    """Depth after so many cone steps from the polygon."""
-    speed = np.sqrt(along_u * along_u + along_v * along_v)
-    d = 0.0
+def cone_steps(repeat, texels, ratios, columns, rows, u, v, along_u, along_v, steps, depth):
+    """Depths of a wave after so many cone steps from the polygon."""
+    speed, p_u, p_v, height, ratio = lanes(), lanes(), lanes(), lanes(), lanes()
+    for lane in range(LANES):
+        speed[lane] = np.sqrt(along_u[lane] * along_u[lane] + along_v[lane] * along_v[lane])
+        depth[lane] = 0.0
     for _ in range(steps):
-        p_u, p_v = u - along_u * d, v - along_v * d
-        above = max(0.0, 1.0 - fetch(texels, columns, rows, repeat, p_u, p_v) - d)
-        ratio = fetch(ratios, columns, rows, repeat, p_u, p_v)
-        d += ratio * above / (speed + ratio)
-    return d
+        for lane in range(LANES):
+            p_u[lane], p_v[lane] = u[lane] - along_u[lane] * depth[lane], v[lane] - along_v[lane] * depth[lane]
+        fetch_wave(texels, columns, rows, repeat, p_u, p_v, height)
+        fetch_wave(ratios, columns, rows, repeat, p_u, p_v, ratio)
+        for lane in range(LANES):
+            above = 1.0 - height[lane] - depth[lane]
+            above = above if above > 0.0 else 0.0
+            depth[lane] += ratio[lane] * above / (speed[lane] + ratio[lane])
 
 
 @device
-def _trace(repeat, points, pixel, eye, texels, ratios, columns, rows, steps, found, fetches):
-    u, v, along_u, along_v, seen = view_ray(points, pixel, eye)
+def _trace(repeat, points, first, eye, texels, ratios, columns, rows, steps, found, fetches):
+    u, v, along_u, along_v, depth = lanes(), lanes(), lanes(), lanes(), lanes()
+    count, seen = view_rays(points, first, eye, u, v, along_u, along_v)
     if not seen:
         return
-    d = cone_steps(repeat, texels, ratios, columns, rows, u, v, along_u, along_v, steps)
-    fetches[pixel] = steps
-    keep(found, pixel, steps, u - along_u * d, v - along_v * d, d, repeat is None)
+    cone_steps(repeat, texels, ratios, columns, rows, u, v, along_u, along_v, steps, depth)
+    for lane in range(count):
+        if not np.isnan(u[lane]):
+            pixel, d = first + lane, depth[lane]
+            fetches[pixel] = steps
+            keep(found, pixel, steps, u[lane] - along_u[lane] * d, v[lane] - along_v[lane] * d, d, repeat is None)
 
 
 @kernel
 def cone_search(repeat, points, eye, texels, ratios, columns, rows, steps, found, fetches):
     """Hits of all pixels. steps: N."""
-    for pixel in prange(len(fetches)):
-        _trace(repeat, points, pixel, eye, texels, ratios, columns, rows, steps, found, fetches)
+    for wave in prange((len(fetches) + LANES - 1) // LANES):
+        _trace(repeat, points, wave * LANES, eye, texels, ratios, columns, rows, steps, found, fetches)
 
 
 def search(s: Sought) -> None:

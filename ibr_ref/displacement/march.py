@@ -11,11 +11,21 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.displacement.buffers import load_rays, over_polygon
-from ibr_ref.displacement.maxima import highest_in, level_for
+from ibr_ref.displacement.maxima import cells_in, level_for, within_reach
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.fetches import fetch_wave
 from ibr_ref.pipeline.sampling import lerp
-from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, smallest, store, store_indices
+from ibr_ref.pipeline.waves import (
+    gather,
+    index_lanes,
+    lanes,
+    largest,
+    load,
+    load_indices,
+    smallest,
+    store,
+    store_indices,
+)
 
 _VOLUME_SLACK = 1e-9  # rounding of h = B_h + (C_h - B_h) t; the paper's h = 1 - t is the same number in all lanes
 _BORDER_SLACK = 1e-6
@@ -61,24 +71,32 @@ def clearances(repeat, maxima, settings, bounds, step, clear):
     stride = np.float64(1 << settings.binary_steps)
     (u_low0, u_low1, u_high0, u_high1), (v_low0, v_low1, v_high0, v_high1), (h_low0, h_low1, _, _) = bounds
     bounded = settings.bounded
-    start, last = step * stride / total, (step + STRETCH - 1) * stride / total
-    above = lanes()
+    start, last = max(step * stride / total, 0.0), min((step + STRETCH - 1) * stride / total, 1.0)
     grid = level_for(
         maxima,
         max(lerp(u_high0 - u_low0, u_high1 - u_low1, start), lerp(u_high0 - u_low0, u_high1 - u_low1, last)),
         max(lerp(v_high0 - v_low0, v_high1 - v_low1, start), lerp(v_high0 - v_low0, v_high1 - v_low1, last)),
     )
-    values, everywhere = maxima.values, maxima.everywhere
+    first, second, third, fourth = index_lanes(), index_lanes(), index_lanes(), index_lanes()
+    near, lowest, heights, others = lanes(), lanes(), lanes(), lanes()
+    for i in range(LANES):
+        first[i] = second[i] = third[i] = fourth[i] = 0
     for i in range(STRETCH):
         t = np.float64(step + i) * stride / total
         u_low, u_high = lerp(u_low0, u_low1, t), lerp(u_high0, u_high1, t)
         v_low, v_high = lerp(v_low0, v_low1, t), lerp(v_high0, v_high1, t)
-        heights = highest_in(values, everywhere, grid, u_low, u_high, v_low, v_high) if repeat is None else everywhere
+        first[i], second[i], third[i], fourth[i] = cells_in(grid, u_low, u_high, v_low, v_high)
+        near[i] = 1.0 if within_reach(u_low, u_high, v_low, v_high) & (repeat is None) else 0.0
         beside = (u_high < -_BORDER_SLACK) | (u_low > 1.0 + _BORDER_SLACK)
         beside |= (v_high < -_BORDER_SLACK) | (v_low > 1.0 + _BORDER_SLACK)
-        above[i] = np.inf if beside & bounded else lerp(h_low0, h_low1, t) - heights
+        lowest[i] = np.inf if beside & bounded else lerp(h_low0, h_low1, t)
+    gather(maxima.values, first, heights)
+    for more in (second, third, fourth):
+        gather(maxima.values, more, others)
+        for i in range(STRETCH):
+            heights[i] = heights[i] if heights[i] > others[i] else others[i]
     for i in range(STRETCH):
-        clear[i] = above[i]
+        clear[i] = lowest[i] - (heights[i] if near[i] > 0.0 else maxima.everywhere)
 
 
 @device
@@ -110,7 +128,7 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
         for lane in range(LANES):
             stop[lane] = -1.0
         bounds = wave_bounds(u, v, h, du, dv, dh, stop, settings.volume)
-        step, known, stopped = first_step, first_step, 0  # clear[i] is known for the step known - STRETCH + i
+        step, known = first_step, first_step  # clear[i] is known for the step known - STRETCH + i
         while step <= steps:
             if step == known:
                 clearances(repeat, maxima, settings, bounds, step, clear)
@@ -123,7 +141,7 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
                 p_u[lane] = u[lane] + du[lane] * t
                 p_v[lane] = v[lane] + dv[lane] * t
             fetch_wave(texels, columns, rows, repeat, p_u, p_v, sample)
-            before, stopped = stopped, 0
+            stopped = 0
             for lane in range(LANES):
                 inside = (p_u[lane] >= low) & (p_u[lane] <= high) & (p_v[lane] >= low) & (p_v[lane] <= high)
                 below = h[lane] + dh[lane] * t < sample[lane]
@@ -133,9 +151,6 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
             if stopped == LANES:
                 break
             step += 1
-            if stopped > before:  # the lanes that are left may have a clear way
-                bounds = wave_bounds(u, v, h, du, dv, dh, stop, settings.volume)
-                known = step
         store_indices(stop, linear_index, first)
 
 

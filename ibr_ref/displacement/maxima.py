@@ -106,26 +106,27 @@ def level_for(maxima, width, height):
 
 
 @device
-def _index(cell):
-    return np.uint32(np.int32(cell))
-
-
-@device
-def highest_in(values, everywhere, grid, u_low, u_high, v_low, v_high):
-    """An upper bound of every fetch with u in [u_low, u_high] and v in [v_low, v_high] (clamped), from four cells."""
+def cells_in(grid, u_low, u_high, v_low, v_high):
+    """Indices of the four cells that u in [u_low, u_high] and v in [v_low, v_high] (clamped) reach at most."""
     offset, columns, across, along, last_column, last_row, slack = grid
     left = clamped(np.floor(u_low * across - slack), 0.0, last_column)
     right = clamped(np.floor(u_high * across + slack), 0.0, last_column)
     top = clamped(np.floor(v_low * along - slack), 0.0, last_row) * columns + offset
     bottom = clamped(np.floor(v_high * along + slack), 0.0, last_row) * columns + offset
-    upper = max(values[_index(top + left)], values[_index(top + right)])
-    lower = max(values[_index(bottom + left)], values[_index(bottom + right)])
-    near = (abs(u_low) < _FAR) & (abs(u_high) < _FAR) & (abs(v_low) < _FAR) & (abs(v_high) < _FAR)
-    return max(upper, lower) if near else everywhere
+    return np.int32(top + left), np.int32(top + right), np.int32(bottom + left), np.int32(bottom + right)
+
+
+@device
+def within_reach(u_low, u_high, v_low, v_high):
+    """Whether coordinates round by so little that `cells_in` holds."""
+    return (abs(u_low) < _FAR) & (abs(u_high) < _FAR) & (abs(v_low) < _FAR) & (abs(v_high) < _FAR)
 
 
 @device
 def highest(maxima, u_low, u_high, v_low, v_high):
-    """The same for a single range: its own level."""
+    """An upper bound of every fetch with u in [u_low, u_high] and v in [v_low, v_high] (clamped)."""
     grid = level_for(maxima, u_high - u_low, v_high - v_low)
-    return highest_in(maxima.values, maxima.everywhere, grid, u_low, u_high, v_low, v_high)
+    first, second, third, fourth = cells_in(grid, u_low, u_high, v_low, v_high)
+    values = maxima.values
+    here = max(max(values[first], values[second]), max(values[third], values[fourth]))
+    return here if within_reach(u_low, u_high, v_low, v_high) else maxima.everywhere

@@ -9,32 +9,51 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.below import border, keep, sample, view_ray
+from ibr_ref.displacement.below import border, keep, sampled, view_rays
 from ibr_ref.displacement.cone import cone_steps
 from ibr_ref.displacement.cones import cone_ratios
 from ibr_ref.displacement.sought import Sought
-from ibr_ref.jit import device, kernel, prange
+from ibr_ref.jit import LANES, device, kernel, prange
+from ibr_ref.pipeline.fetches import fetch_wave
+from ibr_ref.pipeline.waves import lanes
 
 
 @device
-def _trace(repeat, points, pixel, eye, texels, ratios, columns, rows, steps, halvings, found, fetches):
-    u, v, along_u, along_v, seen = view_ray(points, pixel, eye)
+def _halve(repeat, texels, columns, rows, u, v, along_u, along_v, halvings, depth, margin, nearest):
+    """Halvings of the stretch from the polygon to each depth of a wave; the margins start at infinity."""
+    bounded = repeat is None
+    stretch, p_u, p_v, height = lanes(), lanes(), lanes(), lanes()
+    for lane in range(LANES):
+        margin[lane] = nearest[lane] = np.inf
+        if halvings > 0:
+            depth[lane] = 0.5 * depth[lane]
+        stretch[lane] = depth[lane]
+    for _ in range(halvings):
+        for lane in range(LANES):
+            p_u[lane], p_v[lane] = u[lane] - along_u[lane] * depth[lane], v[lane] - along_v[lane] * depth[lane]
+        fetch_wave(texels, columns, rows, repeat, p_u, p_v, height)
+        for lane in range(LANES):
+            stretch[lane] *= 0.5
+            inside, distance, _ = sampled(height[lane], bounded, p_u[lane], p_v[lane], depth[lane])
+            margin[lane] = min(margin[lane], distance)
+            nearest[lane] = border(p_u[lane], p_v[lane], bounded, nearest[lane])
+            depth[lane] += -stretch[lane] if inside else stretch[lane]
+
+
+@device
+def _trace(repeat, points, first, eye, texels, ratios, columns, rows, steps, halvings, found, fetches):
+    u, v, along_u, along_v, depth, margin, nearest = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    count, seen = view_rays(points, first, eye, u, v, along_u, along_v)
     if not seen:
         return
-    reached = cone_steps(repeat, texels, ratios, columns, rows, u, v, along_u, along_v, steps)
-    bounded, margin, nearest = repeat is None, np.inf, np.inf
-    d = stretch = 0.5 * reached
-    for _ in range(halvings):
-        stretch *= 0.5
-        p_u, p_v = u - along_u * d, v - along_v * d
-        inside, distance, _ = sample(repeat, texels, columns, rows, bounded, p_u, p_v, d)
-        margin, nearest = min(margin, distance), border(p_u, p_v, bounded, nearest)
-        d += -stretch if inside else stretch
-    if halvings == 0:
-        d = reached
-    fetches[pixel] = steps + halvings
-    keep(found, pixel, steps, u - along_u * d, v - along_v * d, d, bounded)
-    found.margin[pixel], found.domain_margin[pixel] = margin, nearest
+    cone_steps(repeat, texels, ratios, columns, rows, u, v, along_u, along_v, steps, depth)
+    _halve(repeat, texels, columns, rows, u, v, along_u, along_v, halvings, depth, margin, nearest)
+    for lane in range(count):
+        if not np.isnan(u[lane]):
+            pixel, d = first + lane, depth[lane]
+            fetches[pixel] = steps + halvings
+            keep(found, pixel, steps, u[lane] - along_u[lane] * d, v[lane] - along_v[lane] * d, d, repeat is None)
+            found.margin[pixel], found.domain_margin[pixel] = margin[lane], nearest[lane]
 
 
 @kernel
@@ -42,8 +61,8 @@ def relaxed_cone_search(
     repeat, points, eye, texels, ratios, columns, rows, steps, halvings, found, fetches
 ):  # fmt: skip
     """Hits of all pixels. steps, halvings: N and M."""
-    for pixel in prange(len(fetches)):
-        _trace(repeat, points, pixel, eye, texels, ratios, columns, rows, steps, halvings, found, fetches)
+    for wave in prange((len(fetches) + LANES - 1) // LANES):
+        _trace(repeat, points, wave * LANES, eye, texels, ratios, columns, rows, steps, halvings, found, fetches)
 
 
 def search(s: Sought) -> None:

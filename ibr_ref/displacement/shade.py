@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.jit import LANES, device
-from ibr_ref.pipeline.fetches import fetch_color_wave, fetch_wave
+from ibr_ref.pipeline.fetches import fetch_color_wave, fetch_cross_wave
 from ibr_ref.pipeline.lighting import homogeneous, light_wave, lit_channel, unit
 from ibr_ref.pipeline.sampling import footprint, mix_channel
 from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, store
@@ -34,26 +34,16 @@ def _slope(ahead, behind, size):
 @device
 def slopes(repeat, hits, count, texels, columns, rows, slope):
     """(g_u, g_v), the gradient of the height map at the hits, from one texel to either side."""
-    step_u, step_v = 1.0 / columns, 1.0 / rows
-    u, v, before, after = lanes(), lanes(), lanes(), lanes()
-    ahead, behind, g_u, g_v = lanes(), lanes(), lanes(), lanes()
+    u, v, left, right, above, below = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    g_u, g_v = lanes(), lanes()
     for first in range(0, count, LANES):
         if nothing_kept(hits, first):
             continue
         load(hits.u, first, u)
         load(hits.v, first, v)
+        fetch_cross_wave(texels, columns, rows, repeat, u, v, left, right, above, below)
         for lane in range(LANES):
-            after[lane], before[lane] = u[lane] + step_u, u[lane] - step_u
-        fetch_wave(texels, columns, rows, repeat, after, v, ahead)
-        fetch_wave(texels, columns, rows, repeat, before, v, behind)
-        for lane in range(LANES):
-            g_u[lane] = _slope(ahead[lane], behind[lane], columns)
-        for lane in range(LANES):
-            after[lane], before[lane] = v[lane] + step_v, v[lane] - step_v
-        fetch_wave(texels, columns, rows, repeat, u, after, ahead)
-        fetch_wave(texels, columns, rows, repeat, u, before, behind)
-        for lane in range(LANES):
-            g_v[lane] = _slope(ahead[lane], behind[lane], rows)
+            g_u[lane], g_v[lane] = _slope(right[lane], left[lane], columns), _slope(below[lane], above[lane], rows)
         store(g_u, slope[0], first)
         store(g_v, slope[1], first)
 

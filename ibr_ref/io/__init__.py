@@ -10,7 +10,7 @@ from ibr_ref.io.meshes import read_mesh
 from ibr_ref.io.msr import has_msr_picture, read_msr, read_msr_cameras
 from ibr_ref.io.outputs import check_writable
 from ibr_ref.io.point_cloud import write_point_cloud
-from ibr_ref.io.posters import write_poster
+from ibr_ref.io.posters import poster_bands, write_poster
 from ibr_ref.io.simple_texture import read_simple_texture, write_simple_texture
 from ibr_ref.io.textures import read_color, read_normal, read_normal_height
 from ibr_ref.io.upright import read_upright
@@ -23,6 +23,7 @@ __all__ = [
     "check_image_writable",
     "check_writable",
     "has_msr_picture",
+    "poster_bands",
     "read_camera_path",
     "read_color",
     "read_depth_cameras",

@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from ibr_ref.io.extras import needed
 from ibr_ref.io.outputs import atomic
+from ibr_ref.io.parts import Rows
 from ibr_ref.io.samples import checked, quantized
-
-Rows = tuple[int, int]
-"""First and one past the last."""
 
 _TILE = 256
 """Pixels a side of a tile; in very wide pictures tiles are lower."""
@@ -39,7 +37,7 @@ def write_poster(
     that are none.
     """
     tifffile = needed("tifffile", "TIFF files")
-    tile = (min(_TILE, max(16, _MOST_PIXELS // width // 16 * 16)), _TILE, 3)
+    tile = (_band_rows(width), _TILE, 3)
     tiles = _tiles(path, draw, width, height, bits, tile, progress)
     with atomic(path) as file, tifffile.TiffWriter(_named(tifffile, file), bigtiff=True) as writer:
         writer.write(
@@ -52,6 +50,16 @@ def write_poster(
             software=False,
             metadata=None,
         )
+
+
+def poster_bands(width: int, height: int) -> list[Rows]:
+    """The rows that `write_poster` asks for, one band after another."""
+    step = _band_rows(width)
+    return [(first, min(height, first + step)) for first in range(0, height, step)]
+
+
+def _band_rows(width: int) -> int:
+    return min(_TILE, max(16, _MOST_PIXELS // width // 16 * 16))
 
 
 def _named(tifffile: Any, file: Any) -> Any:

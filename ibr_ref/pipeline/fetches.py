@@ -1,20 +1,20 @@
-"""Bilinear fetches of whole waves: the same bits as `sampling.fetch`, lane by lane, and a third sooner.
+"""Bilinear fetches of whole waves: the same bits as `sampling.fetch`, lane by lane, in a quarter of the time.
 
-Where to read and the mix of what was read are arithmetic, which LLVM turns into SIMD. Reading itself is no loop that may
-become SIMD: each index would be taken out of a vector and each texel put into one, which is most of a fetch's time. So it
-goes through the lanes' arrays (`waves.gather`).
+Where to read is arithmetic, which LLVM turns into SIMD. Reading is not: where the texels of all lanes lie inside the map,
+they are read two at a time (`mixes`); else one by one, through arrays of lanes (`waves.gather`).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.jit import LANES, device
+from ibr_ref.jit import LANES, device, inlined
+from ibr_ref.pipeline.mixes import mix_cross, mix_pairs, mix_triples
 from ibr_ref.pipeline.sampling import footprint
-from ibr_ref.pipeline.waves import gather, gather_triples, index_lanes, lanes
+from ibr_ref.pipeline.waves import gather, index_lanes, lanes
 
 
-@device
+@inlined
 def _footprints(columns, rows, repeat, u, v, i00, i10, i01, i11, fx, fy):
     for lane in range(LANES):
         t00, t10, t01, t11, fx[lane], fy[lane] = footprint(u[lane], v[lane], columns, rows, repeat)
@@ -22,7 +22,7 @@ def _footprints(columns, rows, repeat, u, v, i00, i10, i01, i11, fx, fy):
         i01[lane], i11[lane] = np.int32(t01), np.int32(t11)
 
 
-@device
+@inlined
 def _mix(t00, t10, t01, t11, fx, fy, out):
     for lane in range(LANES):
         top = t00[lane] * (1.0 - fx[lane]) + t10[lane] * fx[lane]
@@ -30,11 +30,33 @@ def _mix(t00, t10, t01, t11, fx, fy, out):
         out[lane] = top * (1.0 - fy[lane]) + bottom * fy[lane]
 
 
+@inlined
+def _inner_footprints(columns, rows, u, v, upper, lower, fx, fy):
+    """Footprints inside the map, and whether all lie there: else those that do not name the first texel.
+
+    A lane without a place, NaN, mixes to NaN whatever it reads.
+    """
+    outside = 0
+    for lane in range(LANES):
+        x, y = u[lane] * columns - 0.5, v[lane] * rows - 0.5
+        x_floor, y_floor = np.floor(x), np.floor(y)
+        fx[lane], fy[lane] = x - x_floor, y - y_floor
+        inside = (x_floor >= 0.0) & (x_floor <= columns - 2.0) & (y_floor >= 0.0) & (y_floor <= rows - 2.0)
+        outside += 0 if inside | np.isnan(x) | np.isnan(y) else 1
+        at = y_floor * columns + x_floor
+        upper[lane] = np.int32(at if inside else 0.0)
+        lower[lane] = np.int32(at + columns if inside else 0.0)
+    return outside == 0
+
+
 @device
 def fetch_wave(texels, columns, rows, repeat, u, v, out):
     """A one-channel texture at a wave's (u, v), into `out`."""
     i00, i10, i01, i11 = index_lanes(), index_lanes(), index_lanes(), index_lanes()
     fx, fy = lanes(), lanes()
+    if (columns >= 2.0) & _inner_footprints(columns, rows, u, v, i00, i01, fx, fy):
+        mix_pairs(texels, i00, i01, fx, fy, out)
+        return
     t00, t10, t01, t11 = lanes(), lanes(), lanes(), lanes()
     _footprints(columns, rows, repeat, u, v, i00, i10, i01, i11, fx, fy)
     gather(texels, i00, t00)
@@ -49,14 +71,59 @@ def fetch_color_wave(texels, columns, rows, repeat, u, v, red, green, blue):
     """A three-channel texture at a wave's (u, v): the channels, which lie side by side, are read together."""
     i00, i10, i01, i11 = index_lanes(), index_lanes(), index_lanes(), index_lanes()
     fx, fy = lanes(), lanes()
-    r00, r10, r01, r11 = lanes(), lanes(), lanes(), lanes()
-    g00, g10, g01, g11 = lanes(), lanes(), lanes(), lanes()
-    b00, b10, b01, b11 = lanes(), lanes(), lanes(), lanes()
     _footprints(columns, rows, repeat, u, v, i00, i10, i01, i11, fx, fy)
-    gather_triples(texels, i00, r00, g00, b00)
-    gather_triples(texels, i10, r10, g10, b10)
-    gather_triples(texels, i01, r01, g01, b01)
-    gather_triples(texels, i11, r11, g11, b11)
-    _mix(r00, r10, r01, r11, fx, fy, red)
-    _mix(g00, g10, g01, g11, fx, fy, green)
-    _mix(b00, b10, b01, b11, fx, fy, blue)
+    mix_triples(texels, i00, i10, i01, i11, fx, fy, red, green, blue)
+
+
+@inlined
+def _crosses(columns, rows, u, v, step_u, step_v, corner, fx, fy, left_fx, right_fx, above_fy, below_fy):
+    """What `mix_cross` is given, and whether all lanes have their four footprints side by side inside the map."""
+    outside = 0
+    for lane in range(LANES):
+        x, y = u[lane] * columns - 0.5, v[lane] * rows - 0.5
+        left, right = (u[lane] - step_u) * columns - 0.5, (u[lane] + step_u) * columns - 0.5
+        above, below = (v[lane] - step_v) * rows - 0.5, (v[lane] + step_v) * rows - 0.5
+        x_floor, left_floor, right_floor = np.floor(x), np.floor(left), np.floor(right)
+        y_floor, above_floor, below_floor = np.floor(y), np.floor(above), np.floor(below)
+        fx[lane], left_fx[lane], right_fx[lane] = x - x_floor, left - left_floor, right - right_floor
+        fy[lane], above_fy[lane], below_fy[lane] = y - y_floor, above - above_floor, below - below_floor
+        inside = (left_floor >= 0.0) & (right_floor <= columns - 2.0)
+        inside &= (above_floor >= 0.0) & (below_floor <= rows - 2.0)
+        inside &= (x_floor - left_floor == 1.0) & (right_floor - x_floor == 1.0)
+        inside &= (y_floor - above_floor == 1.0) & (below_floor - y_floor == 1.0)
+        outside += 0 if inside | np.isnan(x) | np.isnan(y) else 1
+        corner[lane] = np.int32(above_floor * columns + left_floor if inside else 0.0)
+    return outside == 0
+
+
+@device
+def fetch_cross_wave(texels, columns, rows, repeat, u, v, left, right, above, below):
+    """A one-channel texture one texel beside a wave's (u, v), along u and along v: at (u - 1/columns, v) and so on.
+
+    Where rounding puts such a place into another texel than the next one, and at the borders, each is fetched by itself.
+    """
+    step_u, step_v = 1.0 / columns, 1.0 / rows
+    corner = index_lanes()
+    fx, fy, left_fx, right_fx, above_fy, below_fy = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
+    if (
+        (columns >= 4.0)
+        & (rows >= 4.0)
+        & _crosses(columns, rows, u, v, step_u, step_v, corner, fx, fy, left_fx, right_fx, above_fy, below_fy)
+    ):
+        mix_cross(
+            texels, np.int64(columns), corner, fx, fy, left_fx, right_fx, above_fy, below_fy, left, right, above, below
+        )
+        return
+    beside = fx
+    for lane in range(LANES):
+        beside[lane] = u[lane] - step_u
+    fetch_wave(texels, columns, rows, repeat, beside, v, left)
+    for lane in range(LANES):
+        beside[lane] = u[lane] + step_u
+    fetch_wave(texels, columns, rows, repeat, beside, v, right)
+    for lane in range(LANES):
+        beside[lane] = v[lane] - step_v
+    fetch_wave(texels, columns, rows, repeat, u, beside, above)
+    for lane in range(LANES):
+        beside[lane] = v[lane] + step_v
+    fetch_wave(texels, columns, rows, repeat, u, beside, below)

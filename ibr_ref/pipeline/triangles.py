@@ -146,10 +146,16 @@ def columns_in_row(edges, width):
 
 
 @device
+def _unit(a):
+    return a == 0.0 or a == 1.0
+
+
+@device
 def fill_varyings(edges, first, stop, corners, w, out, start):
     """Perspective-correct varyings with the values `corners` (3, K), for the columns [first, stop), into out[:, start:].
 
-    A varying that is the same at all corners and 0 or 1 is so exactly, by the same formula: it needs no division.
+    A varying that is the same at all corners and 0 or 1 is so exactly, by the same formula: it needs no division. Where the
+    corners have 0 and 1, E a / w is (E / w) a exactly: that needs fewer.
     """
     w0, w1, w2 = w[0], w[1], w[2]
     for k in range(corners.shape[1]):
@@ -157,6 +163,14 @@ def fill_varyings(edges, first, stop, corners, w, out, start):
         if a0 == a1 and a1 == a2 and (a0 == 0.0 or a0 == 1.0):
             for i in range(start, start + stop - first):
                 out[k, i] = a0
+            continue
+        if _unit(a0) and _unit(a1) and _unit(a2):
+            for i in range(stop - first):
+                column = first + i
+                q0 = np.float64(edges.e0 + edges.step0 * column) / w0
+                q1 = np.float64(edges.e1 + edges.step1 * column) / w1
+                q2 = np.float64(edges.e2 + edges.step2 * column) / w2
+                out[k, start + i] = (q0 * a0 + q1 * a1 + q2 * a2) / (q0 + q1 + q2)
             continue
         for i in range(stop - first):
             column = first + i

@@ -23,7 +23,6 @@ from ibr_ref.jit import LANES, config, device
 
 __all__ = [
     "gather",
-    "gather_triples",
     "index_lanes",
     "lanes",
     "largest",
@@ -106,13 +105,6 @@ def _gather(texels, indices, wave):
 
 
 @device
-def _gather_triples(texels, indices, first, second, third):
-    for lane in range(LANES):
-        at = 3 * np.int64(indices[lane])
-        first[lane], second[lane], third[lane] = texels[at], texels[at + 1], texels[at + 2]
-
-
-@device
 def _smallest(wave):
     folded, half = lanes(), LANES
     _load(wave, 0, folded)
@@ -192,30 +184,22 @@ def _store_index_vector(typing: Any, wave: Any, array: Any, first: Any) -> Any:
     return types.void(wave, array, types.intp), emit
 
 
-def _emit_gather(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """Lane by lane, as many channels as there are waves: loads and stores that no pass makes vectors of."""
-    texels, indices, *waves = (
-        make_array(array_type)(context, builder, argument).data
-        for array_type, argument in zip(signature.args, arguments, strict=True)
-    )
-    wide = ir.IntType(64)
-    for lane in range(LANES):
-        index = builder.zext(builder.load(builder.gep(indices, [ir.Constant(wide, lane)])), wide)
-        at = builder.mul(index, ir.Constant(wide, len(waves)))
-        for channel, wave in enumerate(waves):
-            texel = builder.load(builder.gep(texels, [builder.add(at, ir.Constant(wide, channel))]))
-            builder.store(texel, builder.gep(wave, [ir.Constant(wide, lane)]))
-    return context.get_dummy_value()
-
-
 @intrinsic
 def _gather_scalars(typing: Any, texels: Any, indices: Any, wave: Any) -> Any:
-    return types.void(texels, indices, wave), _emit_gather
+    """Lane by lane: loads and stores that no pass makes vectors of."""
 
+    def emit(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        texels, indices, wave = (
+            make_array(array_type)(context, builder, argument).data
+            for array_type, argument in zip(signature.args, arguments, strict=True)
+        )
+        for lane in range(LANES):
+            at = ir.Constant(ir.IntType(64), lane)
+            index = builder.zext(builder.load(builder.gep(indices, [at])), ir.IntType(64))
+            builder.store(builder.load(builder.gep(texels, [index])), builder.gep(wave, [at]))
+        return context.get_dummy_value()
 
-@intrinsic
-def _gather_scalar_triples(typing: Any, texels: Any, indices: Any, first: Any, second: Any, third: Any) -> Any:
-    return types.void(texels, indices, first, second, third), _emit_gather
+    return types.void(texels, indices, wave), emit
 
 
 def _folded(context: Any, builder: Any, array_type: Any, array: Any, comparison: str) -> Any:
@@ -264,9 +248,6 @@ store_indices = _store_indices if _PLAIN else _store_index_vector
 
 gather = _gather if _PLAIN else _gather_scalars
 """gather(texels, indices, wave): read the elements that the lanes of `indices` (int32, none negative) name."""
-
-gather_triples = _gather_triples if _PLAIN else _gather_scalar_triples
-"""gather_triples(texels, indices, first, second, third): the same, three that lie side by side, from 3 index on."""
 
 smallest = _smallest if _PLAIN else _smallest_of_vector
 """smallest(wave): the smallest of its lanes."""

@@ -42,10 +42,14 @@ class Subject:
 
 class _Pickler(pickle.Pickler):
     def reducer_override(self, value: Any) -> Any:
-        """Arrays with their flags."""
-        if type(value) is np.ndarray and value.dtype.kind in "buif":
-            return _array, (value.tobytes(), value.dtype.str, value.shape, value.flags.writeable)
-        return NotImplemented
+        return array_with_flags(value)
+
+
+def array_with_flags(value: Any) -> Any:
+    """For `reducer_override`: arrays with their flags, NotImplemented for all else."""
+    if type(value) is np.ndarray and value.dtype.kind in "buif":
+        return _array, (value.tobytes(), value.dtype.str, value.shape, value.flags.writeable)
+    return NotImplemented
 
 
 def _array(data: bytes, dtype: str, shape: tuple[int, ...], writeable: bool) -> NDArray[Any]:

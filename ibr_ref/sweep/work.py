@@ -18,7 +18,7 @@ CHUNK = 8
 Row = dict[str, float | None]
 """Values of the measures; None where there is nothing to measure."""
 
-_ONE_AT_A_TIME = Lock()
+ONE_AT_A_TIME = Lock()
 """Kernels share their threads: a process calls them from one of its own."""
 
 _subjects: OrderedDict[str, Subject] = OrderedDict()
@@ -30,12 +30,12 @@ def rows_of(packed: bytes, digest: str, params: Any, views: Sequence[int]) -> li
 
     The subject, and what its views are measured against, stay in the process for the next call.
     """
-    with _ONE_AT_A_TIME:
+    with ONE_AT_A_TIME:
         if digest not in _subjects:
-            _recent(_subjects, digest, 2, Subject.unpacked(packed))
+            recent(_subjects, digest, 2, Subject.unpacked(packed))
         subject = _subjects[digest]
         room = room_of(subject.method)
-        return [_row(room, subject.views[view], params, _recent(_kept, (digest, view), CHUNK, {})) for view in views]
+        return [_row(room, subject.views[view], params, recent(_kept, (digest, view), CHUNK, {})) for view in views]
 
 
 def _row(room: Room, view: Any, params: Any, kept: dict[Any, Any]) -> Row:
@@ -51,7 +51,7 @@ def _seconds(draw: Callable[[], object]) -> float:
     return time.perf_counter() - start
 
 
-def _recent(store: OrderedDict[Any, Any], key: Any, most: int, new: Any) -> Any:
+def recent(store: OrderedDict[Any, Any], key: Any, most: int, new: Any) -> Any:
     """What is kept under a key, or the new value; the one that was asked for longest ago makes room."""
     store.setdefault(key, new)
     store.move_to_end(key)

@@ -23,7 +23,7 @@ MOST_WORKERS = 1024
 PATIENCE = 10.0
 """Seconds in which a scheduler answers."""
 
-_HANDED_OUT = 4
+PER_THREAD = 4
 """Tasks a thread of the workers at a time: enough that none waits, few enough that a worker that dies loses little."""
 
 
@@ -54,8 +54,7 @@ def made_by_workers(subject: Subject, tasks: Sequence[Task], scheduler: object, 
     there are processors). Raises OSError for one that does not answer, for workers with other sources of this package, and
     for a task that several workers died over.
     """
-    with _client(scheduler, count) as client:
-        _check_sources(client)
+    with client_of(scheduler, count) as client:
         yield from _handed_out(client, subject, tasks)
 
 
@@ -71,7 +70,7 @@ def _handed_out(client: Any, subject: Subject, tasks: Sequence[Task]) -> Iterato
     machines = {urlsplit(address).hostname: address for address in threads}
     first = zip(machines.values(), waiting, strict=False)
     yield from _ended({submit(t, workers=[a], allow_other_workers=True): t for a, t in first}, iter(()), submit)
-    room = _HANDED_OUT * max(1, sum(threads.values()))
+    room = PER_THREAD * max(1, sum(threads.values()))
     yield from _ended({submit(task): task for task in islice(waiting, room)}, waiting, submit)
 
 
@@ -112,8 +111,15 @@ def _naming(setting: Setting) -> Iterator[None]:
 
 
 @contextmanager
-def _client(scheduler: object, count: int | None) -> Iterator[Any]:
-    """A client, closed afterwards, and its cluster too if that was made here."""
+def client_of(scheduler: object, count: int | None) -> Iterator[Any]:
+    """A client whose workers have these sources, closed afterwards, and its cluster too if that was made here."""
+    with _connected(scheduler, count) as client:
+        _check_sources(client)
+        yield client
+
+
+@contextmanager
+def _connected(scheduler: object, count: int | None) -> Iterator[Any]:
     distributed = needed("distributed", "sweeps on workers", EXTRA)
     if isinstance(scheduler, distributed.Client):
         yield scheduler

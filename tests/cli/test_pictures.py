@@ -85,6 +85,29 @@ def test_frames_of_a_path(run: Run, cube: Path, height: Path, path: Path, tmp_pa
         assert_one_line(run(*film[:-4], "--frames", 5, *film[-2:]), "f.film", "frames of another film")
 
 
+def test_on_workers(run: Run, cube: Path, height: Path, path: Path, tmp_path: Path) -> None:
+    """Frames and bands are the bytes of this process's, of each method; frames that are there stay."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=None
+    ) as cluster:
+        for number, call in enumerate(
+            ((*SHADOWS, cube), (*SPLATTING, cube), ("render", "displacement", "--height", height))
+        ):
+            made = {}
+            for where in ((), ("--scheduler", cluster.scheduler_address)):
+                folder = tmp_path / f"{number}-{len(where)}"
+                folder.mkdir()
+                film = (*call, "--size", "40x30", "--path", path, "--frames", 4, "--out", folder / "f.png", *where)
+                assert run(*film) == (0, "", "")
+                (folder / "f-0002.png").unlink()
+                assert run(*film) == (0, "", "")
+                assert run(*call, "--size", "40x530", "--out", folder / "o.tif", *where) == (0, "", "")
+                made[where] = {file.name: file.read_bytes() for file in sorted(folder.iterdir())}
+            assert len(made[()]) == 6
+            assert len({str(sorted(files.items())) for files in made.values()}) == 1
+
+
 def test_a_video(run: Run, cube: Path, path: Path, tmp_path: Path) -> None:
     film = (*SHADOWS, cube, "--size", "40x30", "--path", path, "--frames", 5, "--out", tmp_path / "f.png")
     assert run(*film, "--video", tmp_path / "film.mp4", "--fps", 10) == (0, "", "")
@@ -99,6 +122,7 @@ def test_a_video(run: Run, cube: Path, path: Path, tmp_path: Path) -> None:
         (("--out", "o.png", "--path", "p.json", "--depth-set", "d"), ("--depth-set: found beside --path p.json",)),
         (("--out", "o.png", "--path", "p.json", "--eye", "1,1,1"), ("--eye", "a camera path has its own cameras")),
         (("--out", "o.png", "--path", "p.json"), ("p.json",)),
+        (("--out", "o.png", "--scheduler", "tcp://127.0.0.1:9"), ("--scheduler: found beside --out o.png", "--path")),
         (("--out", "o.png", "--frames", "4"), ("--frames", "beside --path")),
         (("--out", "o.png", "--fps", "4"), ("--fps", "beside --video")),
         (("--out", "o.png", "--path", "p.json", "--video", "o.avi"), ("o.avi: found the ending", ".mp4")),
