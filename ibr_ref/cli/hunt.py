@@ -53,7 +53,8 @@ def command(
         bool,
         typer.Option(
             "--serve",
-            help='The command is started once, and told "CASE<tab>OUT" line by line; it answers "ok", or why not.',
+            help="The command is started once, and told CASE, a tab and OUT on a line each time; it answers ok on a line, "
+            "or why not.",
         ),
     ] = False,
     page: Annotated[
@@ -93,17 +94,21 @@ def command(
     """Look for a port's bugs with random cases, and make the first failure of each as small as it gets.
 
     A bug is the first wrong stage, the first of its arrays that disagrees, and where known bugs explain it, these. Found
-    ones are skipped from then on.
+    ones are skipped from then on, until the port is right on their cases: those are drawn first when a hunt goes on.
     """
     wanted = _checked(method, system, seconds, device)
     folder = _Folder(out)
     state = folder.state()
     drawer = _drawer(port, serve, page)
-    started, before = time.monotonic(), len(state.bugs)
+    started = time.monotonic()
     from ibr_ref.testing import Hunt, port_of
 
     with progress(1) as step, closing(drawer):
         step("hunting")
+        mended = {bug for bug in state.bugs if folder.is_mended(bug, drawer, device)}
+        for bug in sorted(mended):
+            typer.echo(f"mended: {bug.name}")
+        before = len(state.bugs) - len(mended)
 
         def told(hunt: Hunt) -> None:
             passed = min(time.monotonic() - started, seconds)
@@ -111,7 +116,7 @@ def command(
 
         hunt = Hunt(
             port=partial(port_of, drawer), methods=wanted, system=system, device=device, seed=seed,
-            database=folder.place / "examples", known=set(state.bugs), rounds=state.rounds, told=told,
+            database=folder.place / "examples", known={*state.bugs} - mended, rounds=state.rounds, told=told,
         )  # fmt: skip
         for found in _kept(hunt, seconds, folder):
             typer.echo(_line(found, folder.keep(found, drawer, device)))
@@ -212,6 +217,22 @@ class _Folder:
         text = json.dumps({"seed": hunt.seed, "rounds": hunt.rounds, "bugs": bugs}, indent=1)
         with atomic(self.place / _STATE) as file:
             file.write(text.encode() + b"\n")
+
+    def is_mended(self, bug: Bug, drawer: Drawer, device: str | None) -> bool:
+        """Whether the port is right on the case of a known bug; what it draws of it now is kept."""
+        from ibr_ref import oracle
+        from ibr_ref.io.outputs import make_folder
+        from ibr_ref.testing import bug_of
+
+        folder, drawn = self.place / "cases" / bug.name, self.place / "drawn" / bug.name
+        if not folder.exists():
+            return False
+
+        def port(case: oracle.Case) -> oracle.Submission:
+            drawer.draw(folder.resolve(), make_folder(drawn).resolve())
+            return oracle.load_submission(drawn, case)
+
+        return bug_of(oracle.load_case(folder), port, device) is None
 
     def keep(self, found: Found, drawer: Drawer, device: str | None) -> str:
         """Write case, drawing and report; the first line of the verdict."""

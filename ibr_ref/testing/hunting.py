@@ -15,7 +15,7 @@ from hypothesis.errors import HypothesisException
 
 from ibr_ref.oracle.cases import Case
 from ibr_ref.testing.cases import cases
-from ibr_ref.testing.judging import Bug, Failure, Port, WrongError, failure_of, with_causes
+from ibr_ref.testing.judging import Bug, Failure, Port, WrongError, shown, with_causes
 
 ROUND = 200
 """Examples that Hypothesis draws before it starts anew: it derives many of them from the ones before."""
@@ -91,6 +91,19 @@ class _Shown:
     failure: Failure
 
 
+class _Examples(DirectoryBasedExampleDatabase):
+    """Keeps an example as long as it shows a bug: one that is known by now is no failure in Hypothesis' eyes."""
+
+    def __init__(self, place: Path) -> None:
+        super().__init__(place)
+        self.last_is_wrong = False
+
+    def delete(self, key: bytes, value: bytes) -> None:
+        """What Hypothesis does with an example just after it was tried, and found right."""
+        if not self.last_is_wrong:
+            super().delete(key, value)
+
+
 class _Round:
     """One run of Hypothesis, which looks for one bug."""
 
@@ -98,6 +111,7 @@ class _Round:
         self.hunt, self.method, self.until = hunt, method, until
         self.number = hunt.seed + hunt.rounds
         self.before, self.seconds = hunt.tried, 0.0
+        self.examples = None if hunt.database is None else _Examples(hunt.database / method)
         self.bug: Bug | None = None
         self.smallest: _Shown | None = None
 
@@ -112,11 +126,10 @@ class _Round:
         return Found(bug, self.smallest.case, self.before - started, self.seconds, self.number)
 
     def _test(self) -> Callable[[], None]:
-        database = self.hunt.database
         chosen = settings(
             max_examples=ROUND,
             deadline=None,
-            database=None if database is None else DirectoryBasedExampleDatabase(database / self.method),
+            database=self.examples,
             phases=[Phase.reuse, Phase.generate, Phase.shrink],
             suppress_health_check=list(HealthCheck),
             report_multiple_bugs=False,
@@ -127,7 +140,9 @@ class _Round:
     def _try(self, case: Case) -> None:
         if self.hunt.clock() > self.until and self.hunt.tried:  # the first case may have to wait for kernels
             raise _TimeIsUp
-        failure = failure_of(case, self.hunt.port, self.hunt.device, self.hunt.known)
+        failure, wrong = shown(case, self.hunt.port, self.hunt.device, self.hunt.known)
+        if self.examples is not None:
+            self.examples.last_is_wrong = wrong
         self.hunt.tried += 1
         self.hunt.told(self.hunt)
         if failure is None or failure.bug != (self.bug or failure.bug):

@@ -90,11 +90,30 @@ def bug_of(case: Case, port: Port, device: str | None, known: Collection[Bug] = 
     return None if failure is None else failure.bug
 
 
-# A port's numbers may be anything.
-@np.errstate(all="ignore")
 def failure_of(case: Case, port: Port, device: str | None, known: Collection[Bug] = ()) -> Failure | None:
     """The same, with what has been judged."""
-    return next((f for f in _failures(case, port, device, known) if not _is_known(case, f, known)), None)
+    return shown(case, port, device, known).unknown
+
+
+class Shown(NamedTuple):
+    """What a port shows on a case."""
+
+    unknown: Failure | None
+    """The first failure that is no known bug."""
+    wrong: bool
+    """Whether there is any, known or not."""
+
+
+# A port's numbers may be anything.
+@np.errstate(all="ignore")
+def shown(case: Case, port: Port, device: str | None, known: Collection[Bug] = ()) -> Shown:
+    """The first bug that is not known, and whether the port is wrong at all."""
+    wrong = False
+    for failure in _failures(case, port, device, known):
+        if not _is_known(case, failure, known):
+            return Shown(failure, True)
+        wrong = True
+    return Shown(None, wrong)
 
 
 def _failures(case: Case, port: Port, device: str | None, known: Collection[Bug]) -> Iterator[Failure]:

@@ -51,6 +51,13 @@ def test_a_bug_is_a_case_from_then_on(run: Run, port: str, tmp_path: Path, one_t
     code, said, _ = run("hunt", "--port", port, "--method", "displacement", "--seconds", 1, "--out", out)
     assert code == 1
     assert "0 new bugs, 1 known from before." in said
+    (tmp_path / "port.py").write_text(PORT.replace("BROKEN", "False"))
+    code, said, err = run("hunt", "--port", port, "--method", "displacement", "--seconds", 1, "--out", out)
+    assert code == 0, err
+    assert "mended: displacement-march.steep" in said
+    assert "0 new bugs, 0 known from before." in said
+    code, table, _ = run("check", out / "cases", out / "drawn")
+    assert not table.startswith("FAIL")
 
 
 def test_a_right_port(run: Run, port: str, tmp_path: Path, one_thread: None) -> None:

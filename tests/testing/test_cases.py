@@ -58,8 +58,12 @@ def test_random_devices_are_right_on_them(method: str, one_thread: None) -> None
 
 
 SYSTEMS = [
-    ("displacement", "relief"), ("splatting", "square"), ("splatting", "disc"), ("shadows", "warp"), ("shadows", "direct"),
-]  # fmt: skip
+    (method, system)
+    for method in methods.names()
+    for system in methods.named(method).judged[1]
+    if system != "protruded"
+]
+"""Those that `cases` draws alone when it is asked to; the protruded search without."""
 
 
 @pytest.mark.parametrize(("method", "system"), SYSTEMS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from ibr_ref import oracle
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.faults.displacement import MUTANTS
+from ibr_ref.oracle.files import Submission
 from ibr_ref.testing import Bug, Hunt, PortError, assert_port, bug_of, drawing, judging
 from ibr_ref.testing.judging import failure_of, with_causes
 from tests.oracle.tiny_cases import TINY, handed_of
@@ -129,6 +131,21 @@ def test_it_goes_on_with_what_failed_before(tmp_path: Path) -> None:
     assert first.bug.place == STEEP.place
     again = next(iter(hunt(steep, database=tmp_path, shrinking=3.0, seed=99).run(30)))
     assert again.after == 1
+
+
+def test_going_on_forgets_no_example(tmp_path: Path) -> None:
+    """A bug that is known is no failure from then on, and an example of it all the same."""
+
+    def ends(case: Case) -> Submission:
+        if case.params.linear_steps >= 3:
+            raise PortError("exit code 3")
+        return drawing(reference)(case)
+
+    chase = iter(replace(hunt(reference, database=tmp_path, shrinking=3.0), port=ends).run(15))
+    assert next(chase).bug.array == "exit code 3"
+    kept = {*tmp_path.rglob("*")}
+    assert not [*chase]
+    assert kept <= {*tmp_path.rglob("*")}
 
 
 def test_a_port_that_does_not_draw_and_one_whose_files_are_unusable() -> None:
