@@ -122,7 +122,6 @@ _JUDGED_SEARCHES = (
     "cone",
     "relaxed_cone",
     "donnelly",
-    "maximum_mipmap",
 )
 
 # fmt: off

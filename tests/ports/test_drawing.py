@@ -57,7 +57,7 @@ def test_the_timed_shadows_are_nearly_the_same(name: str, device: Any) -> None:
 
 @pytest.mark.parametrize(
     ("name", "method"),
-    [("displacement-box", "donnelly"), ("shadows-direct", "grid")],
+    [("displacement-box", "exact"), ("shadows-direct", "grid")],
 )
 def test_what_is_not_ported_is_refused_with_its_feature(name: str, method: str, device: Any) -> None:
     from ibr_ref.ports.described import described

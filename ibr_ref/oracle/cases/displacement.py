@@ -385,7 +385,7 @@ CASES: dict[str, Callable[[], Case]] = {
     f"displacement-{make.__name__}": make
     for make in (
         box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing,
-        borders, rim, sliver, relief, parallax, steep, occlusion, cone, relaxed, distance, quadtree,
+        borders, rim, sliver, relief, parallax, steep, occlusion, cone, relaxed, distance,
         metropolis,
     )
 }  # fmt: skip

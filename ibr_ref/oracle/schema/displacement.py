@@ -55,9 +55,7 @@ class DisplacementParams(Model):
     """S, samples towards the light; 0: no self-shadow."""
     shadow_bias: float
     """In units of h."""
-    method: Literal[
-        "protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly", "maximum_mipmap"
-    ]
+    method: Literal["protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly"]
     """The search."""
     lod_bias: float = 1.0
     """Level of the mip chain that "mcguire" takes heights from: 0."""
