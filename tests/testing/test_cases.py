@@ -72,7 +72,7 @@ def test_of_one_system(method: str, system: str, one_thread: None) -> None:
         assert case.system == system
         assert bug_of(case, drawing(plain), "ieee32") is None
 
-    settings(QUIET, max_examples=8)(seed(5)(given(cases(method, system))(right)))()
+    settings(QUIET, max_examples=3)(seed(5)(given(cases(method, system))(right)))()
 
 
 def test_they_shrink_to_a_pixel(one_thread: None) -> None:
