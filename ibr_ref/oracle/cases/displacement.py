@@ -362,15 +362,6 @@ def distance() -> Case:
     return _case("distance", "typical", about, scene, _params(method="donnelly", linear_steps=8, distance_layers=12))
 
 
-def quadtree() -> Case:
-    """Drobot 2009."""
-    camera = _looking(eye=(2.3, -1.5, 1.8), target=(1.3, -0.35, 0.0), vertical_fov=30.0, width=64, height=48)
-    heights = _smooth((9, 13), 0.3, 0.9, 0.1)
-    scene = Scene(polygons=[_sheared(height_map=heights)], camera=camera, light=Light(direction=(0.3, -0.5, 1.0)))
-    about = "A quadtree of maxima over few texels: the first intersection with the bilinear surface itself."
-    return _case("quadtree", "typical", about, scene, _params(method="maximum_mipmap"))
-
-
 def metropolis() -> Case:
     """A picture of real size."""
     camera = _looking(eye=(2.6, -3.14, 2.02), target=(0.0, 0.0, 0.0), vertical_fov=52.0, width=640, height=480)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import reduce
-from typing import ClassVar
 
 import numpy as np
 
@@ -39,9 +38,6 @@ class Hits:
 
 class March(Vertex, TextureUnit):
     """Linear search, binary search, steepness."""
-
-    along_ray: ClassVar[bool] = True
-    """Whether indices say how far along the ray a hit is, and not what was fetched."""
 
     def march(self, patch: Patch, fragments: Fragments) -> Hits:
         """The hits of one patch's fragments."""

@@ -235,7 +235,7 @@ def undecided(case: Case, picture: Picture, width: Floats) -> Bools:
     for k, x in enumerate(looks.color):
         beyond |= np.maximum(x.low - reference[:, k], reference[:, k] - x.high) > BYTE
     same = (looks.polygon == polygon[looks.pixel]) & (index[looks.pixel] >= 0)
-    far = same & picture.model.program.along_ray & (np.abs(looks.hit_index - index[looks.pixel]) > 1)
+    far = same & (np.abs(looks.hit_index - index[looks.pixel]) > 1)
     result = np.zeros(pixels, np.bool_)
     result[looks.pixel[beyond | far]] = True
     result |= picture.winners.empty & (np.abs(case.frame.color.reshape(-1, 3) - behind).max(axis=1) > BYTE)
