@@ -40,6 +40,15 @@ def _column(parts: Any, put: Callable[..., Any], axis: int) -> Number:
     return Number.of_rows(ops, found, names, ops.lane(*numbers))
 
 
+def _concatenate(ops: Any, parts: Any, axis: int = 0) -> Number:
+    """One after the other: each row belongs to the run that it came from."""
+    found = _column(parts, np.concatenate, axis)
+    lanes = [getattr(x, "lane", None) for x in parts]
+    if axis == 0 and all(lane is not None for lane in lanes):
+        found.lane = np.concatenate(lanes)
+    return found
+
+
 def _roll(ops: Any, x: Any, shift: int, axis: int = 0) -> Any:
     return x.each(lambda v: np.roll(v, shift, axis), x.lane)
 
@@ -52,7 +61,7 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.where: _where,
     np.clip: lambda ops, x, low, high: ops.rising(lambda v: np.clip(v, low, high), x),
     np.stack: _stack,
-    np.concatenate: lambda ops, parts, axis=0: _column(parts, np.concatenate, axis),
+    np.concatenate: _concatenate,
     np.broadcast_to: lambda ops, x, shape: x.each(lambda v: np.broadcast_to(v, shape), x.lane),
     np.broadcast_arrays: lambda ops, *parts: parts,
     np.shape: lambda ops, x: x.shape,

@@ -106,3 +106,11 @@ def test_the_same_numbers_in_any_shape() -> None:
     assert (column.rows[:, :, 0] == square.rows[:, :, 0]).all()
     wide = ops.in_lanes(y[0], x)
     assert (ops.multiply(x, wide).rows == ops.multiply(x, y[0]).rows).all()
+
+
+def test_rows_one_after_the_other_keep_their_runs() -> None:
+    ops = Bounds(GL)
+    parts = [Number(ops, np.arange(3.0), 1.0, {}, np.array(lane)) for lane in ([0, 1, 2], [2, 0, 1])]
+    both = np.concatenate(parts)  # type: ignore[call-overload]
+    assert both.lane.tolist() == [0, 1, 2, 2, 0, 1]
+    assert both.value.tolist() == [0.0, 1.0, 2.0, 0.0, 1.0, 2.0]
