@@ -43,7 +43,7 @@ def _column(parts: Any, put: Callable[..., Any], axis: int) -> Number:
 def _concatenate(ops: Any, parts: Any, axis: int = 0) -> Number:
     """One after the other: each row belongs to the run that it came from."""
     found = _column(parts, np.concatenate, axis)
-    lanes = [getattr(x, "lane", None) for x in parts]
+    lanes: list[Any] = [getattr(x, "lane", None) for x in parts]
     if axis == 0 and all(lane is not None for lane in lanes):
         found.lane = np.concatenate(lanes)
     return found
