@@ -28,8 +28,8 @@ from ibr_ref.models.knot import knot
 from ibr_ref.models.sphere import sphere
 
 if TYPE_CHECKING:
-    from ibr_ref.models.shadow_stage import shadow_ensemble, shadow_stage
     from ibr_ref.models.stage_light import StageLight
+    from ibr_ref.models.staged import shadow_ensemble, shadow_stage
 
 __all__ = [
     "StageLight",
@@ -48,7 +48,8 @@ __all__ = [
     "sphere",
 ]
 
-_OF_SHADOWS = {"StageLight": "stage_light", "shadow_ensemble": "shadow_stage", "shadow_stage": "shadow_stage"}
+_OF_SHADOWS = {"StageLight": "stage_light", "shadow_ensemble": "staged", "shadow_stage": "staged"}
+"""In files of other names than theirs: a file that is imported takes the place of what is called like it."""
 
 
 def __getattr__(name: str) -> Any:

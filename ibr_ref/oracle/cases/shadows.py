@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ibr_ref import models
-from ibr_ref.models.shadow_stage import shadow_stage
+from ibr_ref.models.staged import shadow_stage
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.cases.shadow_meshes import block, grid, moved, painted, plate, rack, stool, wall
 from ibr_ref.scene import AreaLight, Camera
