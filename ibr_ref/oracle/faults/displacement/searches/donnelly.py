@@ -81,7 +81,7 @@ class _UpsideDown(Donnelly):
         return count - 1 - super().layer(number, count)
 
 
-@DONNELLY.add("distances in 8 bits", small=True, only=ONLY)
+@DONNELLY.add("distances in 8 bits", only=ONLY)
 class _Bytes(Donnelly):
     """The distance map is an 8-bit texture, whose fetches are bytes."""
 
