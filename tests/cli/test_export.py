@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fnmatch
 import json
 from pathlib import Path
 
@@ -19,6 +20,7 @@ def small_cases(monkeypatch: pytest.MonkeyPatch, one_thread: None) -> None:
     """Two small cases instead of the built-in ones."""
     small = {name: CASES[name] for name in ("maps", "parallel")}
     monkeypatch.setattr(cases, "names", lambda: list(small))
+    monkeypatch.setattr(cases, "matching", lambda pattern: fnmatch.filter(small, pattern))
     monkeypatch.setattr(cases, "build", lambda name: small[name]() if name in small else _unknown(name))
 
 

@@ -104,6 +104,7 @@ def test_json_on_standard_output(run: Run, case: Path, tmp_path: Path, monkeypat
 
 def test_figures_on_standard_output(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     row = {"scene": "box", "width": 64, "height": 48, "linear_steps": 10, "paper_ms": 16.7}
+    row |= {"gathers": 1_000_000, "gathers_per_second": 1e9, "gathers_ms": 1.0, "beside_gathers": 1.25}
     times = {f"{what}_{which}_ms": 1.25 for what in ("picture", "stages") for which in ("best", "median")}
     monkeypatch.setattr("ibr_ref.bench.displacement.times", lambda repeat: [{**row, **times}])
     code, out, err = run("bench", "displacement", "--json", "-")

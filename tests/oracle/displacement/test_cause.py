@@ -84,6 +84,16 @@ def test_nor_is_one_that_no_suspect_has() -> None:
     assert named("displacement-slope", arrays) == []
 
 
+def test_of_a_few_wrong_pixels_no_parameter_is_named() -> None:
+    """One of a dozen numbers explains them by chance."""
+    what = case("displacement-slope")
+    arrays = dict(what.frame.stages)
+    steep = np.array(arrays["march.steep"])
+    at = np.argwhere(np.asarray(arrays["march.hit_index"]) > 0)[:3]
+    steep[tuple(at.T)] = ~steep[tuple(at.T)]
+    assert named("displacement-slope", {**arrays, "march.steep": steep}) == []
+
+
 class _Unknown(Port):
     """A bug that is in no catalogue: the search's position is off by a sixteenth along u."""
 

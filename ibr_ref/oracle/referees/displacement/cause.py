@@ -29,6 +29,8 @@ NUMBERS = ("linear_steps", "binary_steps", "steep_threshold", "min_steps", "max_
 """Parameters of searches."""
 LIT = ("shadow_steps", "shadow_bias")
 """Those of self-shadow."""
+EVIDENCE = 16
+"""Wrong elements from which on a parameter is believed: of the dozen numbers that are tried one explains a few by chance."""
 
 
 def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
@@ -39,7 +41,7 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
     """
     inquiry = _inquiry(case, device, handed)
     found = _found(case, handed, wrong, inquiry)
-    if found.causes:
+    if found.causes or wrong.wrong.sum() < EVIDENCE:
         return found
     causes = _found(case, handed, wrong, replace(inquiry, mutants=_taken(case))).causes
     return replace(found, causes=causes)
