@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.affine.rows import DEVIATION, ERROR, SLOPES, VALUE, deviate, round_once
+from ibr_ref.affine.rows import DEVIATION, ERROR, SLOPES, VALUE, deviate, finish
 from ibr_ref.array_types import Floats, Ints
 from ibr_ref.jit import device, routine
 
@@ -39,9 +39,7 @@ def plus(a: Floats, b: Floats, at_a: Ints, at_b: Ints, sign: float, units: float
         for i in range(n):
             along = a[s, p * i] if s >= 0 else 0.0
             result[row, i] = along + sign * b[t, q * i] if t >= 0 else along
-    deviate(result)
-    if units >= 0.0:
-        round_once(result, units)
+    finish(result, units)
     return result
 
 
@@ -69,9 +67,7 @@ def _multiply(a: Floats, b: Floats, at_a: Ints, at_b: Ints, units: float, result
         else:
             for i in range(n):
                 result[row, i] = 0.0
-    deviate(result)
-    if units >= 0.0:
-        round_once(result, units)
+    finish(result, units)
 
 
 @routine
@@ -109,9 +105,7 @@ def over(a: Floats, b: Floats, at_a: Ints, at_b: Ints, units: float) -> Floats:
             for k in range(len(at_a)):
                 result[SLOPES + k, i] = 0.0
         result[ERROR, i] = np.inf if np.isnan(error) else error
-    deviate(result)
-    if units >= 0.0:
-        round_once(result, units)
+    finish(result, units)
     return result
 
 
@@ -149,12 +143,17 @@ def add_product(
 ) -> None:
     """A b more in a sum, total (3 + K, n); size (n,): of its terms. term: (3 + K, n) room."""
     _multiply(a, b, at_a, at_b, units, term)
-    _gather(total, size, term)
+    _gather(total, size, term, np.arange(SLOPES, len(term)))
 
 
 @routine
 def add_number(total: Floats, size: Floats, a: Floats, at_a: Ints) -> None:
     """A number more in a sum."""
+    _gather(total, size, a, at_a)
+
+
+@device
+def _gather(total: Floats, size: Floats, a: Floats, at_a: Ints) -> None:
     n = total.shape[1]
     p = _step(a, n)
     for i in range(n):
@@ -165,17 +164,6 @@ def add_number(total: Floats, size: Floats, a: Floats, at_a: Ints) -> None:
         if at_a[k] >= 0:
             for i in range(n):
                 total[SLOPES + k, i] += a[at_a[k], p * i]
-
-
-@device
-def _gather(total: Floats, size: Floats, term: Floats) -> None:
-    for i in range(total.shape[1]):
-        size[i] += abs(term[VALUE, i]) + term[DEVIATION, i]
-        total[VALUE, i] += term[VALUE, i]
-        total[ERROR, i] += term[ERROR, i]
-    for k in range(SLOPES, len(total)):
-        for i in range(total.shape[1]):
-            total[k, i] += term[k, i]
 
 
 @routine

@@ -55,6 +55,14 @@ def from_float(x: float) -> float:
     return off if np.isfinite(off) else 0.0
 
 
+@device
+def finish(number: Floats, units: float) -> None:
+    """Its deviation, and the rounding of the operation that it comes from."""
+    deviate(number)
+    if units >= 0.0:
+        round_once(number, units)
+
+
 @routine
 def deviated(number: Floats) -> None:
     """(3 + K, n) whose deviations are filled in."""

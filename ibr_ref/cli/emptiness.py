@@ -7,14 +7,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ibr_ref.io import Frame
     from ibr_ref.pipeline.culling import Culled
     from ibr_ref.shadows.culling import Cut
-
-
-def shows(frame: Frame) -> bool:
-    """Whether anything is there."""
-    return bool((frame.depth < 1.0).any())
 
 
 def say(shown: bool, culled: Callable[[], Culled]) -> None:

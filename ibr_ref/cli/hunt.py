@@ -20,6 +20,7 @@ from ibr_ref.oracle.device import PROFILES
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
+    from ibr_ref import oracle
     from ibr_ref.testing import Bug, Drawer, Found, Hunt
 
 EXAMPLES = """
@@ -221,18 +222,23 @@ class _Folder:
     def is_mended(self, bug: Bug, drawer: Drawer, device: str | None) -> bool:
         """Whether the port is right on the case of a known bug; what it draws of it now is kept."""
         from ibr_ref import oracle
-        from ibr_ref.io.outputs import make_folder
         from ibr_ref.testing import bug_of
 
-        folder, drawn = self.place / "cases" / bug.name, self.place / "drawn" / bug.name
-        if not folder.exists():
-            return False
+        folder = self._case(bug.name)
+        return folder.exists() and bug_of(oracle.load_case(folder), partial(self._draw, drawer), device) is None
 
-        def port(case: oracle.Case) -> oracle.Submission:
-            drawer.draw(folder.resolve(), make_folder(drawn).resolve())
-            return oracle.load_submission(drawn, case)
+    def _case(self, name: str) -> Path:
+        """Where a bug's case is."""
+        return self.place / "cases" / name
 
-        return bug_of(oracle.load_case(folder), port, device) is None
+    def _draw(self, drawer: Drawer, case: oracle.Case) -> oracle.Submission:
+        """What the port draws of a case that is kept, which is kept too. Raises PortError where it does not."""
+        from ibr_ref import oracle
+        from ibr_ref.io.outputs import make_folder
+
+        drawn = make_folder(self.place / "drawn" / case.name)
+        drawer.draw(self._case(case.name).resolve(), drawn.resolve())
+        return oracle.load_submission(drawn, case)
 
     def keep(self, found: Found, drawer: Drawer, device: str | None) -> str:
         """Write case, drawing and report; the first line of the verdict."""
@@ -243,13 +249,11 @@ class _Folder:
         name = found.bug.name
         about = f"{found.case.about} ibr-ref hunt, seed {found.seed}: {found.bug.array} of {found.bug.stage}."
         case = replace(found.case, name=name, about=about)
-        folder, drawn = self.place / "cases" / name, make_folder(self.place / "drawn" / name)
-        oracle.export(case, folder, force=True)
+        oracle.export(case, self._case(name), force=True)
         try:
-            drawer.draw(folder.resolve(), drawn.resolve())
+            submission = self._draw(drawer, case)
         except PortError as error:
             return f"{name}: {error}"
-        submission = oracle.load_submission(drawn, case)
         problems = [str(problem) for problem in submission.problems]
         examination = oracle.examine(
             case, submission.handed, profile=device or submission.declaration, problems=problems

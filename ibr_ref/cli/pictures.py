@@ -105,7 +105,7 @@ def draw(
 
     render(scene, rows=...) draws a scene, or some rows of it; fit(camera) is a camera of a path with planes around it.
     """
-    from ibr_ref.cli import emptiness
+    from ibr_ref.io.parts import shows
 
     if wanted.path is not None:
         return _film(wanted, scene, params, render, fit, step), None
@@ -113,7 +113,7 @@ def draw(
         return _in_bands(wanted, scene, render, step), None
     step("rendering")
     frame = render(scene)
-    return emptiness.shows(frame), frame
+    return shows(frame), frame
 
 
 def write(

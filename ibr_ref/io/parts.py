@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from ibr_ref.io.frame import Frame
 
 Rows = tuple[int, int]
 """First and one past the last."""
@@ -37,4 +40,9 @@ def drawn(scene: Any, render: Callable[..., Any], part: Part) -> Drawn:
     """Draw a part of a scene; render(scene, rows=...) gives a frame."""
     scene = scene if part.camera is None else replace(scene, camera=part.camera)
     frame = render(scene) if part.rows is None else render(scene, rows=part.rows)
-    return Drawn(frame.color, bool((frame.depth < 1.0).any()))
+    return Drawn(frame.color, shows(frame))
+
+
+def shows(frame: Frame) -> bool:
+    """Whether anything but the background is there."""
+    return bool((frame.depth < 1.0).any())

@@ -103,10 +103,6 @@ class Bounds(Choices):
             return first
         return self.combined(pairs.plus, first, other, sign, self.device.operation)
 
-    def product(self, a: Any, b: Any) -> Number:
-        """A b, not rounded."""
-        return self.combined(pairs.times, self.of(a), self.of(b), EXACT)
-
     def multiply(self, a: Any, b: Any) -> Number:
         """A b; by 1 it is exact where products are correctly rounded."""
         first, second = self.of(a), self.of(b)
@@ -123,10 +119,6 @@ class Bounds(Choices):
         """Of a product: by a power of two it is exact where rounding is correct."""
         return EXACT if self._correct and (_is_binary(a) or _is_binary(b)) else self.device.operation
 
-    def quotient(self, a: Any, b: Any) -> Number:
-        """A / b, not rounded."""
-        return self.combined(pairs.over, self.of(a), self.of(b), EXACT)
-
     def divide(self, a: Any, b: Any) -> Number:
         """A / b; by a constant power of two it is exact."""
         b = self.of(b)
@@ -142,9 +134,7 @@ class Bounds(Choices):
             wide = np.where(r > 0.0, np.minimum(off / r, np.sqrt(off)), np.sqrt(off))
             rows = np.where(linear, a.rows / (2.0 * r), 0.0)
             rows[VALUE], rows[ERROR] = r, np.where(linear, a.error / (2.0 * r) + bent, wide)
-        return self.rounded(
-            Number(self, r, rows[ERROR], dict(zip(a.names, rows[SLOPES:], strict=True)), a.lane), self.device.root
-        )
+        return self.rounded(Number.deviating(self, rows, a.names, a.lane), self.device.root)
 
     def sum(self, terms: Sequence[Any], shape: tuple[int, ...] = ()) -> Number:
         """In any order: n roundings of the sum of the sizes."""

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ibr_ref.affine import pairs
-from ibr_ref.affine.rows import DEVIATION, ERROR, EXACT, SLOPES, VALUE
+from ibr_ref.affine.rows import DEVIATION, ERROR, EXACT, SLOPES, VALUE, deviated
 from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.arithmetic.symbols import shaped, together
 
@@ -60,7 +60,7 @@ class Number(_Speaks):
         if slopes:
             for k, slope in enumerate(slopes.values(), SLOPES):
                 self.rows[k] = slope
-            self._deviate()
+            deviated(self.rows.reshape(len(self.rows), -1))
 
     @classmethod
     def of_rows(cls, ops: Any, rows: Floats, names: tuple[str, ...], lane: Any) -> Number:
@@ -69,13 +69,12 @@ class Number(_Speaks):
         result.ops, result.rows, result.names, result.lane = ops, rows, names, lane
         return result
 
-    def _deviate(self) -> None:
-        """Fills in the deviation; a slope without an end, times nothing, may be anything."""
-        found = self.rows[ERROR]
-        if self.names:
-            found = found + np.abs(self.rows[SLOPES:]).sum(axis=0)
-            found = np.where(np.isnan(found), np.inf, found)
-        self.rows[DEVIATION] = found
+    @classmethod
+    def deviating(cls, ops: Any, rows: Floats, names: tuple[str, ...], lane: Any) -> Number:
+        """Of rows whose deviation is filled in."""
+        rows = np.ascontiguousarray(rows)  # which reshape then need not copy
+        deviated(rows.reshape(len(rows), -1))
+        return cls.of_rows(ops, rows, names, lane)
 
     @property
     def value(self) -> Any:

@@ -61,7 +61,9 @@ def _found(case: Case, handed: Handed, wrong: Judgement, inquiry: Inquiry) -> Ex
 def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
     """Whether the bug of that name explains every element of a stage; one that there is not explains none."""
     inquiry = _inquiry(case, device, handed)
-    return replace(inquiry, mutants=[*inquiry.mutants, *_taken(case)]).recognizes(wrong, cause)
+    if all(mutant.name != cause for mutant in inquiry.mutants):
+        inquiry = replace(inquiry, mutants=_taken(case))
+    return inquiry.recognizes(wrong, cause)
 
 
 def _taken(case: Case) -> list[Mutant]:
