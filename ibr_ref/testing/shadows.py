@@ -106,11 +106,11 @@ def lights(draw: DrawFn, axes: Floats, range_: Floats) -> AreaLight:
 
 @st.composite
 def cameras(draw: DrawFn, sizes: SearchStrategy[tuple[int, int]] = SIZES) -> Camera:
-    """From beside and above, as it looks at the floor, and now and then up."""
+    """From beside and above, as it looks at the floor, and now and then up, at what is behind the light too."""
     width, height = draw(sizes)
     view: dict[str, Any] = {
         "eye": (draw(real(-3.0, 3.0)), draw(real(-4.0, -1.0)), draw(real(0.2, 4.0, 1.0))),
-        "target": (draw(real(-0.5, 0.5, 0.0)), 0.0, draw(st.sampled_from([-0.8, -0.8, -0.8, 1.5]))),
+        "target": (draw(real(-0.5, 0.5, 0.0)), 0.0, draw(st.sampled_from([-0.8, -0.8, -0.8, 1.5, 6.0]))),
         "near": draw(st.sampled_from([0.1, 1.5])),
         "far": 20.0,
         "width": width,

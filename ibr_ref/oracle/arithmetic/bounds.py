@@ -69,10 +69,11 @@ class Bounds(Choices):
         number = self.of(x)
         if not np.any(number.error):
             return number
-        self.names[name] = self.names.get(name, 0) + 1
+        names = self.run.names
+        names[name] = names.get(name, 0) + 1
         rows = np.concatenate([number.rows, number.rows[ERROR : ERROR + 1]])
         rows[ERROR] = 0.0
-        return Number.of_rows(self, rows, (*number.names, f"{name} {self.names[name]}"), number.lane)
+        return Number.of_rows(self, rows, (*number.names, f"{name} {names[name]}"), number.lane)
 
     def rounded(self, x: Number, units: float) -> Number:
         """After a rounding; an exact 0 stays exact, and so do floats where rounding is correct (IEEE 754-2019, 4.3)."""

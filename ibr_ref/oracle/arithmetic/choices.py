@@ -95,7 +95,7 @@ class Choices(Decisions):
         far = ~(high - low <= 4.0)
         low, high = (np.where(far, np.floor(np.nan_to_num(x.value)), end) for end in (low, high))
         if far.any() and x.lane is not None:
-            self.lost[x.lane[far]] = True
+            self.run.lost[x.lane[far]] = True
         while (low < high).any():
             stays = Truth(self, np.ones(low.shape, np.bool_), low == high, x.lane).decided()
             high = np.where(stays, high, high - 1.0)
@@ -148,7 +148,7 @@ class Choices(Decisions):
         if isinstance(x, list):
             return [self.rows(each, at) for each in x]
         found = self.of(x)[at]
-        found.lane = np.arange(len(at)) if self.following else None
+        found.lane = np.arange(len(at)) if self.run.following else None
         return found
 
     def blank(self, like: Any, shape: tuple[int, ...]) -> Any:

@@ -10,10 +10,9 @@ import numpy as np
 from ibr_ref.affine.rows import SLOPES
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.arithmetic.number import Number, Truth
+from ibr_ref.oracle.arithmetic.runs import MOST_DECISIONS, Runs
 from ibr_ref.oracle.arithmetic.symbols import all_of, flat, over_symbols, together, united
 
-MOST_DECISIONS = 48
-"""Open decisions on one path of the program; beyond, the lane is lost."""
 MOST_PATHS = 64
 """Paths of one lane; beyond, it is lost: whatever a port makes of it is accepted, and it counts as undecided."""
 
@@ -21,15 +20,12 @@ Outcomes = dict[str, Any]
 """Results, a row for each path of each lane, with "origin", the lane's number."""
 
 
-class Decisions:
+class Decisions(Runs):
     """The outcomes of a program's decisions on many lanes, and what is left to be run again."""
 
     def __init__(self) -> None:
-        self.names: dict[str, int] = {}
-        self.rows_run = 0  # forks and all
-        self.following = False
+        super().__init__()
         self.journal: list[tuple[str, Any]] | None = None
-        self.begin(np.zeros(1, np.int64))
 
     @staticmethod
     def lane(*operands: Any) -> Any:
@@ -45,15 +41,9 @@ class Decisions:
             rows = rows.reshape(len(rows), *shape)
         return Number.of_rows(self, rows, names[: len(rows) - SLOPES], a.lane if a.lane is not None else b.lane)
 
-    def begin(self, origin: Ints, taken: Any = None, known: Any = None) -> None:
-        """Start the program on lanes; `known` outcomes of each are given."""
-        count = len(origin)
-        self.origin = origin
-        self.taken = np.zeros((count, MOST_DECISIONS), np.bool_) if taken is None else taken
-        self.known = np.zeros(count, np.int64) if known is None else known
-        self.asked = np.zeros(count, np.int64)
-        self.lost: Bools = np.zeros(count, np.bool_)
-        self.forks: list[tuple[Any, Any, Any]] = []
+    def begin(self, origin: Ints) -> None:
+        """Start a program on lanes of which nothing is decided yet."""
+        self.run.begin(origin)
 
     def told(self, step: str, x: Any) -> Any:
         """What a trace tells of: written down where one is kept."""
@@ -71,42 +61,42 @@ class Decisions:
         rows = np.flatnonzero(is_open)
         if not len(rows):
             return outcome
-        lane = truth.lane[rows]
-        full = self.asked[lane] >= MOST_DECISIONS
-        self.lost[lane[full]], outcome[rows[full]] = True, True
+        run, lane = self.run, truth.lane[rows]
+        full = run.asked[lane] >= MOST_DECISIONS
+        run.lost[lane[full]], outcome[rows[full]] = True, True
         rows, lane = rows[~full], lane[~full]
-        at = self.asked[lane]
-        fresh = at >= self.known[lane]
+        at = run.asked[lane]
+        fresh = at >= run.known[lane]
         new, place = lane[fresh], at[fresh]
         if len(new):
-            other = self.taken[new].copy()
+            other = run.taken[new].copy()
             other[np.arange(len(new)), place] = False
-            self.forks.append((self.origin[new], other, place + 1))
-            self.taken[new, place], self.known[new] = True, place + 1
-        outcome[rows] = self.taken[lane, at]
-        self.asked[lane] += 1
+            run.forks.append((run.origin[new], other, place + 1))
+            run.taken[new, place], run.known[new] = True, place + 1
+        outcome[rows] = run.taken[lane, at]
+        run.asked[lane] += 1
         return outcome
 
     def follow(self, program: Callable[[Ints], dict[str, Any]], count: int) -> tuple[Outcomes, Ints]:
         """All legal outcomes of a program of lane origins, with "origin"; and the lanes that are lost."""
-        origin, taken, known, names = np.arange(count), None, None, self.names
-        self.following = True
+        run, origin, taken, known = self.run, np.arange(count), None, None
+        names, run.following = run.names, True
         paths, lost, parts = np.zeros(count, np.int64), np.zeros(count, np.bool_), []
         while True:
-            self.begin(origin, taken, known)
-            self.rows_run += len(origin)
-            self.names = dict(names)  # another run's symbols have other names, a fork's the same
+            run.begin(origin, taken, known)
+            run.rows += len(origin)
+            run.names = dict(names)  # another run's symbols have other names, a fork's the same
             parts.append({"origin": origin, **program(origin)})
-            lost[origin[self.lost]] = True
+            lost[origin[run.lost]] = True
             paths += np.bincount(origin, minlength=count)
-            if not self.forks:
+            if not run.forks:
                 break
-            origin, taken, known = (np.concatenate(each) for each in zip(*self.forks, strict=True))
+            origin, taken, known = (np.concatenate(each) for each in zip(*run.forks, strict=True))
             lost |= paths + np.bincount(origin, minlength=count) > MOST_PATHS
             origin, taken, known = (each[~lost[origin]] for each in (origin, taken, known))
             if not len(origin):
                 break
-        self.following = False
+        run.following = False
         outcomes = {name: joined([part[name] for part in parts]) for name in parts[0]}
         return outcomes, np.flatnonzero(lost)
 

@@ -152,6 +152,9 @@ class Number(_Speaks):
         lane = self.lane if self.lane is None or whole else self.lane[rows]
         if isinstance(index, tuple):
             return self.each(lambda x: x[index], lane)
+        if isinstance(index, np.ndarray) and index.ndim == 1:  # in memory as the rows are, which indexing turns round
+            at = np.flatnonzero(index) if index.dtype == np.bool_ else index
+            return Number.of_rows(self.ops, self.rows.take(at, axis=1), self.names, lane)
         return Number.of_rows(self.ops, self.rows[:, index], self.names, lane)
 
     def __len__(self) -> int:

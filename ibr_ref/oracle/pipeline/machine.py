@@ -27,17 +27,16 @@ class Machine(Bounds):
 
     def __init__(self, device: Device) -> None:
         self._textures: dict[Any, tuple[Any, Texture]] = {}
-        self._positions: dict[Any, tuple[Number, Number]] | None = None
         super().__init__(device)
 
     @contextmanager
     def one_place(self) -> Iterator[None]:
         """Fetches at the same coordinate are so at the same texel position, rounding and all."""
-        self._positions = {}
+        self.run.positions = {}
         try:
             yield
         finally:
-            self._positions = None
+            self.run.positions = None
 
     def fetch(self, texels: Any, u: Any, v: Any, repeat: bool) -> Number:
         """Bilinear. Texels that have bounds are mixed as their values are."""
@@ -87,10 +86,11 @@ class Machine(Bounds):
         return self._textures[key][1]
 
     def _position(self, coordinate: Number, size: int) -> Number:
-        if self._positions is None:
+        positions = self.run.positions
+        if positions is None:
             return texel_position(self, coordinate, size)
         key = id(coordinate), size
-        if key not in self._positions:
-            position = self.named("texel", texel_position(self, coordinate, size))
-            self._positions[key] = coordinate, position
-        return self._positions[key][1]
+        if key not in positions:
+            positions[key] = coordinate, self.named("texel", texel_position(self, coordinate, size))
+        found: Number = positions[key][1]
+        return found

@@ -50,11 +50,9 @@ def bare(shape: Shape) -> BasePolygon:
 
 @st.composite
 def parameters(draw: DrawFn, extendable: bool) -> Params:
-    """All parameters; extended faces only where the API allows them, the volume interval as often as the paper's."""
-    interval = draw(st.sampled_from(["paper", "volume"]))
-    faces = "auxiliary"
-    if interval == "paper":
-        faces = draw(st.sampled_from(["auxiliary", "base", "extended" if extendable else "base"]))
+    """All parameters; extended faces only where the API allows them, and the volume interval with auxiliary ones alone."""
+    faces = draw(st.sampled_from(["auxiliary", "auxiliary", "base", "extended" if extendable else "auxiliary"]))
+    interval = draw(st.sampled_from(["paper", "volume"])) if faces == "auxiliary" else "paper"
     return Params(
         linear_steps=draw(st.one_of(st.integers(1, 20), st.sampled_from([1, 10, 40]))),
         binary_steps=draw(st.integers(0, 6)),

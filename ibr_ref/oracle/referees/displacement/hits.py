@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from ibr_ref.array_types import Ints
 from ibr_ref.oracle.accept.winners import Winners, winners
 from ibr_ref.oracle.arithmetic.decisions import joined
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.referees.displacement.model import CHUNK, Model
+from ibr_ref.oracle.referees.displacement.model import Model, shares
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades, Vector, absorbed, taken
 
 
@@ -26,24 +27,24 @@ def points_from(model: Model, quads: list[list[Any]]) -> Points:
 
 
 def _points(model: Model, raster: Any) -> Points:
-    fragments, parts = raster.fragments, []
-    for polygon in range(len(model.patches)):
-        mine = np.flatnonzero(fragments.polygon == polygon)
-        if not len(mine):
-            continue
+    fragments = raster.fragments
+
+    def points(mine: Ints) -> Points:
         model.machine.begin(mine)
         box = np.zeros((len(mine), 2))
         point, depth = raster.points(mine, np.arange(len(mine)), box, box + 1.0)
-        parts.append(
-            Points(
-                pixel=fragments.pixel[mine],
-                polygon=fragments.polygon[mine],
-                face=fragments.face[mine],
-                certain=fragments.certain[mine],
-                point=absorbed(point),
-                depth=absorbed(depth),
-            )
+        return Points(
+            pixel=fragments.pixel[mine],
+            polygon=fragments.polygon[mine],
+            face=fragments.face[mine],
+            certain=fragments.certain[mine],
+            point=absorbed(point),
+            depth=absorbed(depth),
         )
+
+    of_polygons = (np.flatnonzero(fragments.polygon == polygon) for polygon in range(len(model.patches)))
+    jobs = [partial(points, some) for mine in of_polygons for some in shares(mine)]
+    parts = [*model.machine.side_by_side(jobs)]
     return Points.joined(parts) if parts else no_points(model)
 
 
@@ -54,18 +55,22 @@ def no_points(model: Model) -> Points:
     return Points(pixel=nothing, polygon=nothing, face=nothing, certain=nothing > 0, point=[none] * 3, depth=none)
 
 
-def _by_polygon(model: Model, polygon: Ints) -> Iterator[tuple[int, Ints]]:
-    """Rows of each polygon, some thousands at a time."""
+Outcomes = tuple[Ints, dict[str, Any], Ints]
+"""The row of each outcome, its columns, and the rows that are lost."""
+
+
+def _followed(
+    model: Model, rows: Ints, polygon: Ints, run: Callable[[int, Ints, Ints], dict[str, Any]]
+) -> Iterator[Outcomes]:
+    """All outcomes of a run of a polygon, rows and lanes: of rows whose polygons are given, some thousands at a time."""
+    jobs = []
     for number in range(len(model.patches)):
-        mine = np.flatnonzero(polygon == number)
-        for first in range(0, len(mine), CHUNK):
-            yield number, mine[first : first + CHUNK]
+        mine = rows[polygon == number]
+        jobs += [partial(_outcomes, model, some, partial(run, number)) for some in shares(mine)]
+    return model.machine.side_by_side(jobs)
 
 
-def followed(
-    model: Model, rows: Ints, run: Callable[[Ints, Ints], dict[str, Any]]
-) -> tuple[Ints, dict[str, Any], Ints]:
-    """All outcomes of a run of rows and lanes: the row of each, its columns, and the rows that are lost."""
+def _outcomes(model: Model, rows: Ints, run: Callable[[Ints, Ints], dict[str, Any]]) -> Outcomes:
     with np.errstate(all="ignore"):
         outcomes, lost = model.machine.follow(lambda origin: run(rows[origin], np.arange(len(origin))), len(rows))
     columns = {name: absorbed(column) for name, column in outcomes.items() if name != "origin"}
@@ -79,14 +84,13 @@ def _lanes(model: Model, vector: Vector, at: Ints, lane: Ints) -> Vector:
 def hits_of(model: Model, points: Points) -> tuple[Hits, Ints]:
     """The legal outcomes of all fragments, and the pixels of those that have too many."""
     parts, lost = [], [np.zeros(0, np.int64)]
-    for polygon, rows in _by_polygon(model, points.polygon):
 
-        def run(at: Ints, lane: Ints, polygon: int = polygon) -> dict[str, Any]:
-            depth = model.machine.lanes(points.depth[at], lane)
-            march = model.marched(polygon, points.face[at], _lanes(model, points.point, at, lane), depth)
-            return {**march, "depth": model.depths(polygon, march["hit_index"], march["hit"], depth)}
+    def run(polygon: int, at: Ints, lane: Ints) -> dict[str, Any]:
+        depth = model.machine.lanes(points.depth[at], lane)
+        march = model.marched(polygon, points.face[at], _lanes(model, points.point, at, lane), depth)
+        return {**march, "depth": model.depths(polygon, march["hit_index"], march["hit"], depth)}
 
-        at, found, many = followed(model, rows, run)
+    for at, found, many in _followed(model, np.arange(len(points)), points.polygon, run):
         lost.append(points.pixel[many])
         parts.append(
             Hits(
@@ -122,14 +126,13 @@ def no_hits(model: Model) -> Hits:
 def redepthed(model: Model, hits: Hits) -> Number:
     """The depths of hits that lie elsewhere than they were found; not of the polygon."""
     parts, order = [Number(model.machine, np.zeros(0))], [np.zeros(0, np.int64)]
-    for polygon, rows in _by_polygon(model, hits.polygon):
 
-        def run(at: Ints, lane: Ints, polygon: int = polygon) -> dict[str, Any]:
-            face_depth = model.machine.lanes(hits.depth[at], lane)
-            hit = _lanes(model, hits.hit, at, lane)
-            return {"depth": model.depths(polygon, hits.hit_index[at], hit, face_depth)}
+    def run(polygon: int, at: Ints, lane: Ints) -> dict[str, Any]:
+        face_depth = model.machine.lanes(hits.depth[at], lane)
+        hit = _lanes(model, hits.hit, at, lane)
+        return {"depth": model.depths(polygon, hits.hit_index[at], hit, face_depth)}
 
-        at, found, _ = followed(model, rows, run)
+    for at, found, _ in _followed(model, np.arange(len(hits)), hits.polygon, run):
         parts.append(found["depth"])
         order.append(at)
     where = np.concatenate(order)
@@ -142,19 +145,18 @@ def shades_of(model: Model, hits: Hits) -> tuple[Shades, Ints]:
     """The legal looks of all kept hits, and the pixels of those that have too many."""
     parts, lost = [], [np.zeros(0, np.int64)]
     kept = np.flatnonzero(hits.kept)
-    for polygon, some in _by_polygon(model, hits.polygon[kept]):
 
-        def run(at: Ints, lane: Ints, polygon: int = polygon) -> dict[str, Any]:
-            patch, program = model.patches[polygon], model.program
-            hit = _lanes(model, hits.hit, at, lane)
-            wall = hits.steep[at] & (patch.facade is not None)
-            with model.machine.one_place():
-                normal, albedo = program.looks(patch, hit, wall)
-            columns = {"normal": normal, "albedo": albedo}
-            columns = {name: [model.machine.lanes(x, lane) for x in vector] for name, vector in columns.items()}
-            return {**columns, "lit": np.asarray(program.lit(patch, hit))}
+    def run(polygon: int, at: Ints, lane: Ints) -> dict[str, Any]:
+        patch, program = model.patches[polygon], model.program
+        hit = _lanes(model, hits.hit, at, lane)
+        wall = hits.steep[at] & (patch.facade is not None)
+        with model.machine.one_place():
+            normal, albedo = program.looks(patch, hit, wall)
+        columns = {"normal": normal, "albedo": albedo}
+        columns = {name: [model.machine.lanes(x, lane) for x in vector] for name, vector in columns.items()}
+        return {**columns, "lit": np.asarray(program.lit(patch, hit))}
 
-        at, found, many = followed(model, kept[some], run)
+    for at, found, many in _followed(model, kept, hits.polygon[kept], run):
         lost.append(hits.pixel[many])
         parts.append(Shades(pixel=hits.pixel[at], hit=at, **found))
     if not parts:
@@ -167,15 +169,14 @@ def lighted(model: Model, hits: Hits, shades: Shades) -> tuple[Ints, Vector, Int
     """Colours of shades, of which shade each is, and the pixels of those that have too many."""
     index, colors = [np.zeros(0, np.int64)], [[Number(model.machine, np.zeros(0))] * 3]
     lost = [np.zeros(0, np.int64)]
-    for polygon, rows in _by_polygon(model, hits.polygon[shades.hit]):
 
-        def run(at: Ints, lane: Ints, polygon: int = polygon) -> dict[str, Any]:
-            vectors = [(hits.hit, shades.hit[at]), (shades.albedo, at), (shades.normal, at)]
-            hit, albedo, normal = (_lanes(model, vector, rows, lane) for vector, rows in vectors)
-            color = model.program.colored(model.patches[polygon], hit, albedo, normal, shades.lit[at])
-            return {"color": model.written(color)}
+    def run(polygon: int, at: Ints, lane: Ints) -> dict[str, Any]:
+        vectors = [(hits.hit, shades.hit[at]), (shades.albedo, at), (shades.normal, at)]
+        hit, albedo, normal = (_lanes(model, vector, rows, lane) for vector, rows in vectors)
+        color = model.program.colored(model.patches[polygon], hit, albedo, normal, shades.lit[at])
+        return {"color": model.written(color)}
 
-        at, found, many = followed(model, rows, run)
+    for at, found, many in _followed(model, np.arange(len(shades)), hits.polygon[shades.hit], run):
         lost.append(shades.pixel[many])
         index.append(at)
         colors.append(found["color"])

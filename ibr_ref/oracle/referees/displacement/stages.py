@@ -44,7 +44,7 @@ class Stages:
     @property
     def cost(self) -> int:
         """Rows of the program that were run, forks too."""
-        return START + self.model.machine.rows_run
+        return START + self.model.machine.run.rows
 
     def take_fragments(self, other: Stages) -> None:
         """Those of a program that draws the same faces."""

@@ -37,7 +37,7 @@ class Replay:
     @property
     def cost(self) -> int:
         """In rows of a march: those of this program are a sixteenth as long."""
-        return START + self.given.model.machine.rows_run // 16
+        return START + self.given.model.machine.run.rows // 16
 
     def names(self, part: str) -> tuple[str, ...]:
         """What of a part was handed in, and is judged in this case."""

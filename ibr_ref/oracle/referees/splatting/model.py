@@ -134,7 +134,7 @@ class Model:
 
     def _placed(self, points: Table) -> Placed:
         parts = []
-        self.machine.rows_run += len(points)
+        self.machine.run.rows += len(points)
         for number, share in points.shares():
             with np.errstate(all="ignore"):
                 found = self.program.placed(self.case.scene.images[number], points.texels(share))

@@ -35,7 +35,7 @@ class Stages:
     @property
     def cost(self) -> int:
         """In rows of a march: those of this program are a sixteenth as long."""
-        return START + self.port.model.machine.rows_run // 16
+        return START + self.port.model.machine.run.rows // 16
 
     def judgements(self) -> Iterator[Judgement]:
         """Of what was handed in, in pipeline order."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -58,14 +59,16 @@ def codes_of(model: Model, number: int, among: Bools | None = None) -> tuple[Int
         surface = preparation.surface(model.case.scene.images[number])
     asked = np.flatnonzero(surface.mask.reshape(-1) if among is None else surface.mask.reshape(-1) & among)
     pixels, codes, lost = [np.zeros(0, np.int64)], [[Number(machine, np.zeros(0))] * 3], [np.zeros(0, np.int64)]
-    for first in range(0, len(asked), CHUNK):
-        some = asked[first : first + CHUNK]
 
-        def run(origin: Ints, some: Ints = some) -> dict[str, Any]:
+    def followed(some: Ints) -> tuple[Ints, dict[str, Any], Ints]:
+        def run(origin: Ints) -> dict[str, Any]:
             return {"codes": [machine.of(x) for x in preparation.codes_at(surface, some[origin])]}
 
         with np.errstate(all="ignore"):
-            found, many = machine.follow(run, len(some))
+            return some, *machine.follow(run, len(some))
+
+    jobs = [partial(followed, asked[first : first + CHUNK]) for first in range(0, len(asked), CHUNK)]
+    for some, found, many in machine.side_by_side(jobs):
         pixels.append(some[found["origin"]])
         codes.append(found["codes"])
         lost.append(some[many])
