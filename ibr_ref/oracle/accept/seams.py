@@ -49,3 +49,22 @@ def owners(found: Fragments, vertices: NDArray[np.integer], width: int) -> Owner
     owner[np.maximum(first, second)] = np.minimum(first, second)
     drawn[first] = drawn[second] = True
     return Owners(owner, drawn)
+
+
+def loose(found: Fragments, pixel: Ints, vertices: NDArray[np.integer], drawn: Bools) -> Bools:
+    """(n,) whether a fragment's pixel may lie beyond an edge where nothing else covers it; drawn (T,): triangles.
+
+    A pixel near an edge of two triangles is covered by one of them, whichever it is, if it may be covered by both. Where
+    none is on the other side, or one that is so thin that the pixel lies beyond it too, there may be nothing.
+    """
+    names = vertices.astype(np.int64)
+    a, b = names[:, [1, 2, 0]], names[:, [2, 0, 1]]
+    count = int(names.max(initial=0)) + 1
+    edge, forward = np.minimum(a, b) * count + np.maximum(a, b), a < b
+    _, number = np.unique(edge, return_inverse=True)
+    number = number.reshape(edge.shape)
+    key = 2 * (pixel[:, None] * (int(number.max(initial=0)) + 1) + number[found.triangle])
+    key += forward[found.triangle] ^ found.turned[:, None]
+    unsure = ~found.inside
+    there = drawn[found.triangle] & np.isin(pixel, pixel[unsure.any(axis=1)])
+    return np.asarray((unsure & ~np.isin(key ^ 1, key[there])).any(axis=1), np.bool_)

@@ -6,7 +6,6 @@ up to `moved` along x and y. Everything else of a fragment follows from where in
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from typing import Any
@@ -17,6 +16,7 @@ from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept import borders, coverage
 from ibr_ref.oracle.accept.bounded import Bounded
+from ibr_ref.oracle.accept.seams import loose
 from ibr_ref.oracle.accept.whole import Whole, whole
 from ibr_ref.oracle.arithmetic.bounds import Bounds
 from ibr_ref.oracle.arithmetic.number import Number
@@ -108,7 +108,7 @@ def fragments_of(program: Any, polygons: Faces, unclipped: Faces, polygon: int, 
         polygon=np.full(len(t), polygon),
         triangle=t,
         face=np.array([program.face_number(face) for face, _ in triangles], np.int64)[t],
-        certain=_surely_covered(pixel, found, values[..., 4:]) & kept[t],
+        certain=_surely_covered(found, pixel, values[..., 4:], drawn) & kept[t],
         weights=value,
         rounding=rounding,
         pieces=pieces,
@@ -205,18 +205,9 @@ def _weights(
     return value, rounding, gradient[t]
 
 
-def _surely_covered(pixel: Ints, found: coverage.Fragments, patch: Floats) -> Bools:
-    """Whether the polygon covers the pixel in any case.
-
-    Its triangles share edges, with the same corners on either side: a pixel near such an edge alone is covered by one of
-    the two, whichever it is. So only the edges that one triangle has for itself leave room for nothing, and only where a
-    triangle that may cover the pixel is not certainly inside of them.
-    """
-    corners = [[tuple(corner) for corner in triangle] for triangle in patch.tolist()]
-    keys = [[frozenset((c[(i + 1) % 3], c[(i + 2) % 3])) for i in range(3)] for c in corners]
-    count = Counter(key for triangle in keys for key in triangle)
-    shared = np.array([[count[key] > 1 for key in triangle] for triangle in keys], np.bool_).reshape(-1, 3)
-    loose = ~(found.inside | shared[found.triangle]).all(axis=1)
+def _surely_covered(found: coverage.Fragments, pixel: Ints, patch: Floats, drawn: Bools) -> Bools:
+    """(n,) whether the polygon covers the pixel in any case; patch (T, 3, 3): corners, drawn (T,): triangles."""
+    _, vertices = np.unique(patch.reshape(-1, 3), axis=0, return_inverse=True)
     doubtful = np.zeros(int(pixel.max(initial=-1)) + 1, np.bool_)
-    doubtful[pixel[loose]] = True
+    doubtful[pixel[loose(found, pixel, vertices.reshape(-1, 3), drawn)]] = True
     return ~doubtful[pixel]

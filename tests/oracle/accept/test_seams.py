@@ -7,7 +7,7 @@ import pytest
 
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import fragments
-from ibr_ref.oracle.accept.seams import owners
+from ibr_ref.oracle.accept.seams import loose, owners
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 from ibr_ref.oracle.device import IEEE32, VULKAN, Device
 from tests.oracle.accept.test_bounds import _inside
@@ -51,3 +51,26 @@ def test_a_border_is_not_a_seam() -> None:
     on_edge = (found.rows == 20) & ~found.certain
     assert on_edge.any()
     assert not owners(found, triangles, SIZE).drawn[on_edge].any()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_beside_a_strip_thinner_than_its_corners_are_known(seed: int) -> None:
+    """What the edge of two triangles leaves open one of both has, but for pixels that lie beyond the other, a thin one."""
+    random = np.random.default_rng(seed)
+    lower = np.stack([np.linspace(2.0, 37.0, 4), 20.0 + random.uniform(-4.0, 4.0, 4)], axis=1)
+    upper = lower + np.stack([np.zeros(4), random.uniform(0.0, 0.1, 4)], axis=1)
+    points = np.concatenate([lower, upper, upper + np.array([0.0, 6.0])])
+    cells = np.concatenate([np.arange(3), np.arange(4, 7)])[:, None] + np.array([0, 1, 5, 0, 5, 4])
+    triangles, off = cells.reshape(-1, 3), np.repeat([0.02, 0.4, 0.02], 4)
+    corners = [Bounded(points[triangles, k], off[triangles], VULKAN) for k in (0, 1)]
+    found = fragments(corners[0], corners[1], SIZE, SIZE)
+    pixel = found.rows * SIZE + found.columns
+    doubtful = np.zeros(SIZE * SIZE, np.bool_)
+    doubtful[pixel[loose(found, pixel, triangles, np.ones(len(triangles), np.bool_))]] = True
+    certain = ~doubtful[pixel]
+    assert 0 < certain.sum() < len(certain)
+    arithmetic = Arithmetic(Policy(subpixel_rounding="down"))
+    for _ in range(40):
+        moved = arithmetic.snap(points + off[:, None] * random.choice([-1.0, 1.0], points.shape))
+        inside = np.any([_inside(moved[t], SIZE, SIZE) for t in triangles], axis=0).reshape(-1)
+        assert inside[pixel[certain]].all()

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ibr_ref.array_types import Ints
 from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.coverage import Fragments
+from ibr_ref.oracle.accept.seams import loose
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.referees.shadows.drawing import Pass, Varyings
 from ibr_ref.oracle.referees.shadows.model import Model
@@ -78,24 +79,23 @@ def mesh_of(model: Model, target: Number, size: int) -> Mesh:
     x, y = (Bounded(at.value[..., k] + shift, at.error[..., k], at.device) for k in range(2))
     found = window.cover(x, y)
     varyings = Varyings(model, raster, Triangles.of(x, y, size, size))
-    return Mesh(found, varyings, corners, size, *_shown(found, _on_border(corners), size))
+    return Mesh(found, varyings, corners, size, *_shown(found, corners, size))
 
 
-def _shown(found: Fragments, border: NDArray[np.bool_], size: int) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+def _shown(found: Fragments, corners: Ints, size: int) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """(S S) by pixel, of the fragments inside their triangle the last one; and whether the mesh's border may pass it.
 
     A pixel of which none is inside lies on an edge between triangles, and has the one that is least outside; or beyond the
-    border (T, 3), by the edges of triangles, and has none.
+    border, by the edges of triangles (T, 3), and has none.
     """
-    pixel = found.rows * size + found.columns
+    border, pixel = _on_border(corners), found.rows * size + found.columns
     inside = np.nan_to_num(np.minimum(found.weights.min(axis=1), 0.0), nan=-np.inf, neginf=-np.inf)
     beyond: NDArray[np.bool_] = np.any((found.weights < 0.0) & border[found.triangle], axis=1)
     order = np.lexsort((found.triangle, inside, ~beyond, pixel))
     last = np.full(size * size, -1, np.int64)
     last[pixel[order]] = np.where(beyond[order], -1, order)
-    loose = ~(found.inside | ~border[found.triangle]).all(axis=1)
     near = np.zeros(size * size, np.bool_)
-    near[pixel[loose]] = True
+    near[pixel[loose(found, pixel, corners, np.ones(len(corners), np.bool_))]] = True
     near[pixel[found.certain]] = False
     return last, near
 
