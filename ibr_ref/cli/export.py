@@ -66,9 +66,13 @@ def _print_list() -> None:
 
     names = cases.names()
     width = max(map(len, names), default=0)
-    for name in names:
-        case = cases.build(name)
-        typer.echo(f"{name:{width}}  {case.kind:11}  {case.about}")
+    lines = []
+    with progress(len(names)) as step:  # each is made for it, which compiles kernels the first time
+        for name in names:
+            step(name)
+            case = cases.build(name)
+            lines.append(f"{name:{width}}  {case.kind:11}  {case.about}")
+    typer.echo("\n".join(lines))
 
 
 def _export(word: str, folder: Path, force: bool) -> None:
