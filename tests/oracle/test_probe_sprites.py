@@ -57,6 +57,21 @@ def test_sprites_of_a_pixel() -> None:
     assert {*found.faults} <= {*DRIVER_FAULTS}
 
 
+@pytest.mark.parametrize(("rounding", "found"), [(0.5, "nearest"), (0.0, "either"), (0.9, "either")])
+def test_which_byte_a_colour_is_stored_as(rounding: float, found: str) -> None:
+    arrays = drawn(Port, Policy())
+    bytes_ = np.floor(255.0 * arrays["color"] + rounding).astype(np.uint8)
+    measured = measure(case(), {**arrays, "color": bytes_})
+    assert measured.numbers == {"unorm_rounding": found}
+    assert "of" in measured.why["unorm_rounding"]
+
+
+def test_a_picture_of_something_else_says_nothing_of_bytes() -> None:
+    arrays = drawn(Port, Policy())
+    measured = measure(case(), {**arrays, "color": np.full(arrays["color"].shape, 200, np.uint8)})
+    assert not measured.numbers
+
+
 def test_the_case_has_small_and_large_splats() -> None:
     width = np.asarray(drawn(Port, Policy())["vertex.width"])
     assert (width < SMALL).sum() >= 12

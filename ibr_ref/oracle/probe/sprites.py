@@ -3,7 +3,7 @@
 From the port's own windows and widths, and the columns and rows that each splat covers, follows by how much all of them lie
 beside their points: a splat from c - w/2 to c + w/2 covers the centres between, and each border that is seen leaves an
 interval of a pixel for the offset. Splats below a pixel mostly cover no centre; where all of them cover one they are drawn
-larger than they are.
+larger than they are. A picture in bytes shows which of its neighbours a colour between two of them is stored as.
 """
 
 from __future__ import annotations
@@ -37,6 +37,10 @@ SMALL = 0.8
 """Pixels: splats below it cover less than two thirds of the centres."""
 FEW = 12
 """So many of them have to be there."""
+TIE = 1e-3
+"""Bytes: nearer to the middle between two of them a colour may be stored as either."""
+COLORS = 100
+"""Channels of points whose bytes have to be seen."""
 
 
 def probe_case() -> Case:
@@ -93,7 +97,22 @@ def measure(case: Case, arrays: Mapping[str, Any]) -> Measured:
         why["least_sprite"] = f"{covered} of {len(small)} splats below {SMALL} pixels are drawn"
         if covered == len(small):
             faults["sprites one pixel at least"] = f"all {covered} splats below {SMALL} pixels are drawn"
-    return Measured({}, why, faults)
+    return Measured({}, why, faults) | _stored(shown, arrays)
+
+
+def _stored(shown: Any, arrays: Mapping[str, Any]) -> Measured:
+    """Which bytes the points' own colours became."""
+    picture, colors = (np.asarray(arrays.get(name, 0.0)) for name in ("color", "vertex.color"))
+    if picture.dtype != np.uint8 or colors.ndim != 2:
+        return Measured()
+    seen = shown >= 0
+    wanted = 255.0 * np.clip(np.asarray(colors, np.float64)[shown[seen]], 0.0, 1.0)
+    off = np.abs(picture[seen] - wanted)[np.abs(wanted - np.floor(wanted) - 0.5) > TIE]
+    if len(off) < COLORS or not (off < 1.0).all():
+        return Measured()
+    nearest = int((off < 0.5).sum())
+    why = {"unorm_rounding": f"{nearest} of {len(off)} stored colours are the nearest byte"}
+    return Measured({"unorm_rounding": "nearest" if nearest == len(off) else "either"}, why)
 
 
 def _intervals(shown: Any, window: Floats, width: Floats, axis: int) -> Iterator[tuple[float, float]]:
