@@ -122,6 +122,7 @@ _JUDGED_SEARCHES = (
     "cone",
     "relaxed_cone",
     "donnelly",
+    "maximum_mipmap",
 )
 
 # fmt: off

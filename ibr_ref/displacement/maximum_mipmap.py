@@ -142,7 +142,7 @@ def _trace(repeat, points, pixel, eye, texels, columns, rows, tree, found, fetch
     d, fetches[pixel] = _descend(repeat, texels, columns, rows, tree, u, v, along_u, along_v, last)
     if d <= 1.0 or last == 1.0:
         d = min(d, 1.0)
-        keep(found, pixel, fetches[pixel], u - along_u * d, v - along_v * d, d, False)
+        keep(found, pixel, 0, u - along_u * d, v - along_v * d, d, False)
 
 
 @kernel

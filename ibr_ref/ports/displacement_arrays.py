@@ -1,6 +1,8 @@
-"""What the attachments of the displacement ports hold, under the specification's names."""
+"""What the attachments of the displacement ports hold, under the specification's names, and a quadtree as a texture."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -27,3 +29,9 @@ def stage_arrays(
         "shade.normal": np.where(kept[..., None], normal[..., :3], nothing),
         "shade.lit": kept & (albedo[..., 3] > 0.5),
     }
+
+
+def below_one_another(levels: Sequence[np.ndarray]) -> np.ndarray:
+    """Levels (rows, columns) of a quadtree in one picture, as wide as the first."""
+    width = levels[0].shape[1]
+    return np.vstack([np.pad(level, [(0, 0), (0, width - level.shape[1])]) for level in levels])

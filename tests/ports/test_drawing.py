@@ -90,7 +90,7 @@ def test_from_the_command_line(device: Any, tmp_path: Path) -> None:
     assert refused.returncode == 1
     assert refused.stderr.strip() == (
         "displacement-box is not ported: method = 'exact': the port allows protruded, relief, welsh, mcguire, "
-        "tatarchuk, cone, relaxed_cone, donnelly"
+        "tatarchuk, cone, relaxed_cone, donnelly, maximum_mipmap"
     )
     assert not (tmp_path / "port" / "other").exists()
     nowhere = run("nowhere")

@@ -18,16 +18,16 @@ from ibr_ref.affine.pairs import add_number, add_product, sum_up
 from ibr_ref.affine.rows import DEVIATION, ERROR, EXACT, SLOPES, TINY, UNIT, VALUE, rounded
 from ibr_ref.array_types import Ints
 from ibr_ref.oracle.arithmetic import numpy_names
-from ibr_ref.oracle.arithmetic.choices import Choices
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.arithmetic.symbols import all_of, flat, places, shaped, together
+from ibr_ref.oracle.arithmetic.ways import Ways
 from ibr_ref.oracle.device import Device
 
 TRUNCATED = 2.0
 """Of an operation that is rounded, or truncated, the error is below one unit in the last place: what is exact stays so."""
 
 
-class Bounds(Choices):
+class Bounds(Ways):
     """Each result carries a rounding, and what it owes to the symbols."""
 
     bounded = True

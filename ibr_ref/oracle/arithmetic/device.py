@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.array_types import Floats
+from ibr_ref.oracle.arithmetic.one_way import OneWay
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +70,7 @@ def _scattered(array: Floats, seed: int) -> NDArray[np.uint64]:
     return np.asarray(bits ^ (bits >> np.uint64(31)), np.uint64).reshape(np.shape(array))
 
 
-class Arithmetic:
+class Arithmetic(OneWay):
     """Operations as a policy makes them. Arguments are numbers or arrays that broadcast."""
 
     bounded = False

@@ -362,6 +362,20 @@ def distance() -> Case:
     return _case("distance", "typical", about, scene, _params(method="donnelly", linear_steps=8, distance_layers=12))
 
 
+def quadtree() -> Case:
+    """Drobot 2009."""
+    camera = _looking(eye=(2.3, -1.5, 1.8), target=(1.3, -0.35, 0.0), vertical_fov=30.0, width=64, height=48)
+    heights = _smooth((9, 13), 0.45, 0.6, 0.1) + 0.15 * (np.arange(13) + 0.5) / 13
+    colors = np.stack([_smooth((5, 7), 0.5, 0.7, phase) for phase in (0.1, 0.4, 0.7)], axis=-1)
+    polygon = _sheared(height_map=heights, color_map=colors)
+    scene = Scene(polygons=[polygon], camera=camera, light=Light(direction=(0.3, -0.5, 1.0)))
+    about = (
+        "A quadtree of maxima over few texels, highest where its levels have odd sizes: the first intersection with the "
+        "bilinear surface itself, on a slope so gentle that filters with weights of 8 bits are judged too."
+    )
+    return _case("quadtree", "typical", about, scene, _params(method="maximum_mipmap"))
+
+
 def metropolis() -> Case:
     """A picture of real size."""
     camera = _looking(eye=(2.6, -3.14, 2.02), target=(0.0, 0.0, 0.0), vertical_fov=52.0, width=640, height=480)
@@ -376,7 +390,7 @@ CASES: dict[str, Callable[[], Case]] = {
     f"displacement-{make.__name__}": make
     for make in (
         box, mapped, dusk, slope, city, extended, tiles, beside, lamp, filtered, loose, street, planes, low, crossing,
-        borders, rim, sliver, relief, parallax, steep, occlusion, cone, relaxed, distance,
+        borders, rim, sliver, relief, parallax, steep, occlusion, cone, relaxed, distance, quadtree,
         metropolis,
     )
 }  # fmt: skip

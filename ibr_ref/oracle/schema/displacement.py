@@ -10,6 +10,7 @@ from ibr_ref import displacement
 from ibr_ref.displacement.cone_maps import RELAXED, cone_map_of
 from ibr_ref.displacement.distance_maps import distance_map_of
 from ibr_ref.displacement.patch_space import uniforms
+from ibr_ref.displacement.quadtrees import levels_of
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.schema.base import (
     ArrayFile,
@@ -54,7 +55,9 @@ class DisplacementParams(Model):
     """S, samples towards the light; 0: no self-shadow."""
     shadow_bias: float
     """In units of h."""
-    method: Literal["protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly"]
+    method: Literal[
+        "protruded", "relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly", "maximum_mipmap"
+    ]
     """The search."""
     lod_bias: float = 1.0
     """Level of the mip chain that "mcguire" takes heights from: 0."""
@@ -102,6 +105,9 @@ class PolygonFile(Model):
     """Of searches by cones alone."""
     distance_map: ArrayFile | None = None
     """Of "donnelly" alone: (layers, rows, columns), a texture of three dimensions; layer 0 is the top."""
+    quadtree: tuple[ArrayFile, ...] | None = None
+    """Of "maximum_mipmap" alone: the largest height of each cell between four texel centres, then of two by two of them, and
+    so on up to a single one."""
     patch_space: PatchSpace
 
 
@@ -167,6 +173,7 @@ def _polygon(
         },
         cone_map=_cones(f"{stem}.cone_map", polygon, params.method, inputs),
         distance_map=_distances(f"{stem}.distance_map", polygon, params, inputs),
+        quadtree=_quadtree(f"{stem}.quadtree", polygon, params.method, inputs),
         patch_space=PatchSpace(
             axes=numbers(constants.axes),
             rows=numbers(constants.rows),
@@ -189,6 +196,13 @@ def _distances(stem: str, polygon: BasePolygon, params: DisplacementParams, inpu
         return None
     meaning = "distance to the nearest solid voxel in (u, v, d); trilinear, wrapped as the height map is, clamped in d"
     return inputs.array(stem, distance_map_of(polygon, params.distance_layers), meaning)
+
+
+def _quadtree(stem: str, polygon: BasePolygon, method: str, inputs: Inputs) -> tuple[ArrayFile, ...] | None:
+    if method != "maximum_mipmap":
+        return None
+    meaning = "the largest height of each node"
+    return tuple(inputs.array(f"{stem}{i}", level, meaning) for i, level in enumerate(levels_of(polygon)))
 
 
 def _build(

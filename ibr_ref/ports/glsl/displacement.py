@@ -15,7 +15,7 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from ibr_ref.ports.displacement_arrays import stage_arrays
+from ibr_ref.ports.displacement_arrays import below_one_another, stage_arrays
 from ibr_ref.ports.glsl import gl
 from ibr_ref.ports.glsl.patch_frame import PatchFrame
 
@@ -28,7 +28,7 @@ STAGES = {
     "albedo": (4, "f4"),
     "normal": (4, "f4"),
 }
-BELOW = ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly")
+BELOW = ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly", "maximum_mipmap")
 """Searches below the polygon."""
 MISS_DEPTH = np.float32(0.99999994)
 """What a discarded fragment writes as depth when stages are kept: behind any hit, in front of the cleared buffer."""
@@ -252,6 +252,9 @@ def _textures(device: gl.Device, polygon: Any, variant: _Variant) -> list[modern
     distances = getattr(polygon, "distance_map", None)
     if distances is not None:
         textures.append(gl.upload_volume(device, distances, wrap=repeat))
+    levels = getattr(polygon, "quadtree", None)
+    if levels is not None:
+        textures.append(gl.upload(device, below_one_another(levels), filtered=False))
     return textures
 
 

@@ -8,7 +8,7 @@ const FACES = [
     [[0, 1, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1]], [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
 ];
 const ATTACHMENTS = {color: "RGBA32F", index: "RGBA32I", patch: "RGBA32F", hit: "RGBA32F", albedo: "RGBA32F", normal: "RGBA32F"};
-const BELOW = ["relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly"];
+const BELOW = ["relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly", "maximum_mipmap"];
 const UNUSED = {shape: [1, 1, 3], data: new Float64Array(3)};
 
 /** All arrays of a frame, {data, shape} by name. Throws for what is not ported. */
@@ -42,6 +42,7 @@ export async function draw(device, {scene, params}) {
         textures.push(["facade_map", device.upload(polygon.facade_map ?? UNUSED, {repeat: true})]);
         if (polygon.cone_map) textures.push(["cone_map", device.upload(polygon.cone_map, {repeat})]);
         if (polygon.distance_map) textures.push(["distance_map", device.uploadVolume(polygon.distance_map, {repeat})]);
+        if (polygon.quadtree) textures.push(["quadtree", device.upload(belowOneAnother(polygon.quadtree), {filtered: false})]);
         device.bind(program, Object.fromEntries(textures));
         gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
         gl.enable(gl.DEPTH_TEST);
@@ -52,6 +53,17 @@ export async function draw(device, {scene, params}) {
         gl.drawElements(gl.TRIANGLES, quads.length, gl.UNSIGNED_INT, 0);
     }
     return arrays(target, clips, points);
+}
+
+/** Levels of a quadtree in one picture, as wide as the first. */
+function belowOneAnother(levels) {
+    const width = levels[0].shape[1], height = levels.reduce((sum, {shape}) => sum + shape[0], 0);
+    const data = new Float64Array(width * height);
+    let row = 0;
+    for (const level of levels)
+        for (let i = 0; i < level.shape[0]; i++, row++)
+            data.set(level.data.subarray(i * level.shape[1], (i + 1) * level.shape[1]), row * width);
+    return {shape: [height, width], data};
 }
 
 /** Numbers and corners of the faces that turn away from the eye. */

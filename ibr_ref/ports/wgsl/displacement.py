@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import wgpu
 
-from ibr_ref.ports.displacement_arrays import stage_arrays
+from ibr_ref.ports.displacement_arrays import below_one_another, stage_arrays
 from ibr_ref.ports.frame import Frame
 from ibr_ref.ports.glsl.patch_frame import PatchFrame
 from ibr_ref.ports.wgsl import gpu
@@ -35,6 +35,7 @@ SEARCHES = (
     "cone",
     "relaxed_cone",
     "donnelly",
+    "maximum_mipmap",
 )
 """By their numbers in the shader."""
 CORNERS = gpu.Vertices(16, [("float32x3", 0), ("sint32", 12)])
@@ -131,8 +132,10 @@ class Port:
 
 
 def _search_map(polygon: Any, unused: np.ndarray) -> np.ndarray:
-    """What the search has besides heights: ratios of cones, or layers of distances in one picture."""
-    cones, distances = (getattr(polygon, name, None) for name in ("cone_map", "distance_map"))
+    """What the search has besides heights: ratios of cones, layers of distances or levels of a quadtree, in one picture."""
+    cones, distances, levels = (getattr(polygon, name, None) for name in ("cone_map", "distance_map", "quadtree"))
+    if levels is not None:
+        return below_one_another(levels)
     if distances is not None:
         return np.vstack(distances)
     return unused if cones is None else cones

@@ -1,7 +1,7 @@
 // Searches below the polygon, which is the top of the volume. displacement.py puts this behind displacement.wgsl, and SEARCH,
 // MIN_STEPS, MAX_STEPS and DISTANCE_LAYERS in front of both.
 
-@group(0) @binding(7) var search_map: texture_2d<f32>;      // cones, or layers of distances, one below the other
+@group(0) @binding(7) var search_map: texture_2d<f32>;      // cones; layers of distances or levels of a quadtree, one below the other
 
 fn on_map(uv: vec2f) -> bool {
     return REPEAT || (all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0)));
@@ -133,6 +133,81 @@ fn traced(c: vec2f, along: vec2f) -> Hit {
     return hit_at(c, along, min(d, 1.0), f32(LINEAR_STEPS), f32(LINEAR_STEPS), 0.0);
 }
 
+fn below_surface(uv: vec2f, along: vec2f, d: f32) -> f32 {
+    return d - (1.0 - height(uv - along * d));
+}
+
+/// Depth at which the ray meets the bilinear patch between two depths; 2 if it does not.
+fn patch_hit(uv: vec2f, along: vec2f, first: f32, last: f32) -> f32 {
+    let start = below_surface(uv, along, first);
+    if (start > 0.0) { return first; }
+    let middle = below_surface(uv, along, 0.5 * (first + last));
+    let end = below_surface(uv, along, last);
+    let bend = 2.0 * (end - 2.0 * middle + start);
+    let rise = end - start - bend;
+    let inner = rise * rise - 4.0 * bend * start;
+    let apex = bend < 0.0 && rise > 0.0 && rise < -2.0 * bend && inner > 0.0;
+    if (!(end > 0.0 || apex)) { return 2.0; }
+    let root = sqrt(max(0.0, inner));
+    var share = -2.0 * start / (rise + root);
+    if (rise < 0.0) { share = (root - rise) / (2.0 * bend); }
+    return first + clamp(share, 0.0, 1.0) * (last - first);
+}
+
+/// The largest height of a node.
+fn highest(cells: vec2i, node: vec2i, level: u32) -> f32 {
+    var row = node.y;
+    for (var i = 0u; i < level; i++) { row += (cells.y + (1 << i) - 1) >> i; }
+    return textureLoad(search_map, vec2i(node.x, row), 0).x;
+}
+
+/// The first intersection, node by node; the bottom where there is none.
+fn first_hit(uv: vec2f, along: vec2f) -> Hit {
+    let size = vec2i(textureDimensions(height_map));
+    let cells = select(size + 1, size, REPEAT);
+    let x = uv * vec2f(size) + select(0.5, -0.5, REPEAT);
+    let dx = -along * vec2f(size);
+    let ahead = dx > vec2f(0.0);
+    let leaves = abs((select(vec2f(0.0), vec2f(1.0), ahead) - uv) / along);
+    let last = select(min(1.0, min(leaves.x, leaves.y)), 1.0, REPEAT);
+    var cell = vec2i(floor(x));
+    if (!REPEAT) { cell = clamp(cell, vec2i(0), cells - 1); }
+    var top = 0u;
+    while ((1 << top) < max(cells.x, cells.y)) { top++; }
+    var level = top;
+    var d = 0.0;
+    for (var i = 0; i < 4096; i++) {
+        let inside = (cell + 4096 * cells) % cells;
+        let node = inside >> vec2u(level);
+        let begin = cell - inside + (node << vec2u(level));
+        let stop = cell - inside + min((node + 1) << vec2u(level), cells);
+        let above = 1.0 - highest(cells, node, level);
+        let exits = (select(vec2f(begin), vec2f(stop), ahead) - x) / dx;
+        let out_of = max(d, min(min(exits.x, exits.y), last));
+        let passes = above >= out_of;
+        if (!passes && level > 0u) {
+            if (above > d) {
+                d = above;
+                cell = clamp(vec2i(floor(x + dx * d)), begin, stop - 1);
+            }
+            level--;
+            continue;
+        }
+        if (!passes) {
+            let hit = patch_hit(uv, along, d, out_of);
+            if (hit <= 1.0) { return hit_at(uv, along, hit, 0.0, 0.0, 0.0); }
+        }
+        if (!(out_of < last)) { break; }
+        d = out_of;
+        cell = clamp(vec2i(floor(x + dx * d)), begin, stop - 1);
+        if (exits.x <= d) { cell.x = select(begin.x - 1, stop.x, ahead.x); }
+        if (exits.y <= d) { cell.y = select(begin.y - 1, stop.y, ahead.y); }
+        level = min(level + 1u, top);
+    }
+    if (last < 1.0) { return below(vec3f(uv, 0.0)); }
+    return hit_at(uv, along, 1.0, 0.0, 0.0, 0.0);
+}
+
 fn march_below(c: vec3f) -> Hit {
     let v = p.eye_patch.xyz - p.eye_patch.w * c;
     if (!(v.z > 0.0)) { return below(vec3f(c.xy, 0.0)); }
@@ -141,6 +216,7 @@ fn march_below(c: vec3f) -> Hit {
     if (SEARCH == MCGUIRE) { return steep_parallax(c.xy, along); }
     if (SEARCH == TATARCHUK) { return occlusion(c.xy, along); }
     if (SEARCH == WELSH) { return parallax(c.xy, along); }
+    if (SEARCH == MAXIMUM_MIPMAP) { return first_hit(c.xy, along); }
     if (SEARCH == DONNELLY) { return traced(c.xy, along); }
     return cones(c.xy, along);
 }

@@ -30,7 +30,7 @@ COVERED = (
     "borders",
 )
 """The cases of the paper's interval on bounded maps, which is what that port draws."""
-BELOW = ("relief", "parallax", "steep", "occlusion", "cone", "relaxed", "distance")
+BELOW = ("relief", "parallax", "steep", "occlusion", "cone", "relaxed", "distance", "quadtree")
 """Those of the searches below the polygon."""
 
 

@@ -6,13 +6,17 @@ Each variant on one case, each case by several of them; `ibr-ref check --self-te
 from __future__ import annotations
 
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 import pytest
 
+from ibr_ref.array_types import Ints
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.declaration import device_of
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.faults.kinds import Variant
+from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.oracle.programs.displacement.variants import VARIANTS
 from tests.oracle.devices import random_policy
 from tests.oracle.displacement.drawn import REFEREE, SMALL, case, draw, image, profiles_from, wrong
@@ -36,6 +40,30 @@ def test_variants_pass(variant: Variant, name: str) -> None:
     for each in {profile, loosest}:
         found += wrong([REFEREE.judge_image(case(name), device_of(",".join([each, *numbers])), image(arrays))])
     assert not found
+
+
+class _SameLevel(Port):
+    """A walk through a quadtree that goes on at the level of the node that it leaves."""
+
+    def levels_up(self) -> int:
+        return 0
+
+
+class _NoJumps(Port):
+    """One that never moves the ray down to the highest point of a node."""
+
+    def go_down(self, states: Any, node: Any, some: Ints) -> tuple[Any, list[Any]]:
+        lower = states.some(some)
+        return lower.at(lower.depth, lower.level - 1), []
+
+
+@pytest.mark.parametrize("port", [_SameLevel, _NoJumps])
+def test_other_ways_through_a_quadtree_pass(port: type[Port]) -> None:
+    """They find the same."""
+    name = "displacement-quadtree"
+    arrays = draw(name, Policy(), port)
+    assert not wrong(REFEREE.judge_stages(case(name), PROFILES["ieee32"], arrays))
+    assert not wrong([REFEREE.judge_image(case(name), PROFILES["gl"], image(arrays))])
 
 
 @pytest.mark.parametrize(("seed", "name"), list(enumerate(SMALL)))

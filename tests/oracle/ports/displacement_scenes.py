@@ -239,6 +239,7 @@ SCENES |= {
     "cone": _of("displacement-cone"),
     "relaxed_cone": _of("displacement-relaxed"),
     "donnelly": _of("displacement-distance"),
+    "maximum_mipmap": _of("displacement-quadtree"),
 }
 
 USUAL = "slope"
@@ -321,7 +322,7 @@ SHOWN_IN: dict[str, tuple[str, ...]] = {
     # Below the polygon.
     **{
         search: tuple(m.name for m in MUTANTS if m.only[:1] == (search,))
-        for search in ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly")
+        for search in ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly", "maximum_mipmap")
     },
 }
 """Scenes of the mutants that `USUAL` does not show, or does not show as small as they are meant to be."""

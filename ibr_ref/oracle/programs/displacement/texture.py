@@ -30,11 +30,11 @@ class TextureUnit(Case):
         row, fy = self.texel_and_weight(v, rows)
         left, right = self.wrapped(column, columns, repeat), self.wrapped(column + 1.0, columns, repeat)
         upper, lower = self.wrapped(row, rows, repeat), self.wrapped(row + 1.0, rows, repeat)
+        fx, fy = self.do.named("f_x", fx), self.do.named("f_y", fy)  # both f and 1 - f are factors
         if texture.ndim == 3:
             fx, fy = fx[:, np.newaxis], fy[:, np.newaxis]
-        return self.bilinear(
-            (texture[upper, left], texture[upper, right], texture[lower, left], texture[lower, right]), fx, fy
-        )
+        texels = (texture[upper, left], texture[upper, right], texture[lower, left], texture[lower, right])
+        return self.do.settled(self.bilinear(texels, fx, fy), u, v)
 
     def texel_and_weight(self, coordinate: Floats, size: int) -> tuple[Floats, Floats]:
         """The texel whose centre lies at or before a coordinate, and the way from there to the next, in texels."""

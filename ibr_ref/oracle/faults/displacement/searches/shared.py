@@ -11,7 +11,7 @@ from ibr_ref.oracle.programs.displacement.searches.below import Sunken
 
 SHARED = Bugs("march")
 
-BY_HEIGHTS = ("relief", "mcguire", "tatarchuk", "cone", "relaxed_cone")
+BY_HEIGHTS = ("relief", "mcguire", "tatarchuk", "cone", "relaxed_cone", "maximum_mipmap")
 """Those that sink, and look at the height map."""
 DEEP = (*BY_HEIGHTS, "donnelly")
 """Those that sink."""
