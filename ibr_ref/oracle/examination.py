@@ -97,8 +97,8 @@ def examine(
         )
     if wrong is not None:
         fields["first_wrong_stage"] = wrong.stage
-        fields["needs"] = needed(case, handed, trial)
         explanation = explained.get(wrong.stage)
+        fields["needs"] = needed(case, handed, trial, limits=explanation is not None and not explanation.causes)
         if explanation is not None:
             fields |= {"causes": explanation.causes, "suspects": explanation.given_up_after}
         if image is not None and image.wrong.any():

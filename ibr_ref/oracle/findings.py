@@ -61,7 +61,7 @@ class Witness(_Record):
 
 
 class Cause(_Record):
-    """A known bug whose program leaves nothing of what was handed in unexplained."""
+    """A known bug, or another number than the case has, whose program leaves nothing of what was handed in unexplained."""
 
     name: str
     says: str

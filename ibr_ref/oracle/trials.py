@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.declaration import ANY, Declaration
+from ibr_ref.oracle.declaration import ANY, NUMBERS, Declaration
 from ibr_ref.oracle.device import LOOSEST, PROFILES, Device
 from ibr_ref.oracle.judgement import Glances, Handed, Judgement
 from ibr_ref.oracle.referees import referee
@@ -21,6 +21,18 @@ first stages. A picture takes all profiles the same time, and a broken one only 
 
 FREEDOMS: dict[str, Any] = {"subpixel_bits": 4, "filter_result": "unorm8"}
 """What devices in use do and no profile grants: rasterize with the standards' least precision, filter bytes in bytes."""
+
+LIMITS: dict[str, Any] = {
+    **FREEDOMS,
+    "depth_format": "unorm16",
+    "texel_weight_bits": 8,
+    "varyings": "unsnapped",
+    "clip_z": "minus_one_to_one",
+    "clip_border": "allowed",
+    "setup": "whole",
+    "unorm_rounding": "either",
+}
+"""What some device does of all that can be declared, the coarsest in use: a port may say too little of its own."""
 
 FEW = 24
 """Wrong pixels that are looked at before all."""
@@ -115,8 +127,11 @@ def _refuted(case: Case, handed: Handed, failed: Trial, more: Mapping[str, Any])
     return not judge_of.explains_pixels(case, _with(failed.device, more), handed, few.reshape(last.wrong.shape))
 
 
-def needed(case: Case, handed: Handed, failed: Trial) -> dict[str, Any]:
-    """What a device would need beside its numbers for the first wrong judgement of a trial to be right; nothing: no such."""
+def needed(case: Case, handed: Handed, failed: Trial, *, limits: bool = False) -> dict[str, Any]:
+    """What a device would need beside its numbers for the first wrong judgement of a trial to be right; nothing: no such.
+
+    limits: not only `FREEDOMS` are tried, but all that it has less of than others.
+    """
     wrong = next(i for i, j in enumerate(failed.judgements) if j.wrong.any())
 
     def right(judgements: list[Judgement]) -> bool:
@@ -127,7 +142,19 @@ def needed(case: Case, handed: Handed, failed: Trial) -> dict[str, Any]:
             return False
         return right(judge(case, handed, _with(failed.device, more), to_first_wrong=True))
 
-    free = _free(failed.device.numbers)
-    if not free or not explains(free):
+    more = {
+        key: value for key, value in (LIMITS if limits else FREEDOMS).items() if _coarser(failed.device, key, value)
+    }
+    if not more or not explains(more):
         return {}
-    return next((more for more in ({key: value} for key, value in free.items()) if explains(more)), free)
+    for key in [*more]:
+        fewer = {name: value for name, value in more.items() if name != key}
+        if fewer and explains(fewer):
+            more = fewer
+    return more
+
+
+def _coarser(device: Device, name: str, value: Any) -> bool:
+    """Whether a number that a device says nothing of would grant it more."""
+    changes = NUMBERS[name].change(device, value)
+    return name not in device.numbers and any(getattr(device, field) != new for field, new in changes.items())

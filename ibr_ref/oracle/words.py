@@ -44,17 +44,17 @@ def words(verdict: Findings, *, trace: bool = True) -> str:
 
 
 def _causes(verdict: Findings) -> list[str]:
-    """Which known bugs explain it."""
+    """Which known bugs and numbers of the case explain it."""
     if verdict.causes is None:
         return []
     ended = [] if verdict.suspects is None else [f"  Stopped looking for the bug after {verdict.suspects} suspects."]
     if not verdict.causes:
-        return ended or ["  No known bug explains all of it."]
+        return ended or ["  No known bug and no number of the case explains all of it."]
     if len(verdict.causes) == 1:
         (cause,) = verdict.causes
         alone = "" if ended else ", and by no other"
-        return [f"  Explained by a known bug{alone}: {cause.name}. {cause.says}", *ended]
-    lines = [f"  Explained by {len(verdict.causes)} known bugs, which this case does not tell apart:"]
+        return [f"  Explained by a known cause{alone}: {cause.name}. {cause.says}", *ended]
+    lines = [f"  Explained by {len(verdict.causes)} known causes, which this case does not tell apart:"]
     return lines + [f"    {cause.name}: {cause.says}" for cause in verdict.causes] + ended
 
 

@@ -105,6 +105,16 @@ def test_what_the_first_wrong_stage_would_need(monkeypatch: pytest.MonkeyPatch) 
     assert needed(box_case(), handed, failed) == {"filter_result": "unorm8"}
 
 
+@pytest.mark.parametrize("numbers", [("depth_format=unorm16",), ("subpixel_bits=4", "clip_border=allowed")], ids=str)
+def test_what_a_declared_device_has_too_little_of(numbers: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: Coarse(numbers))
+    handed = {**STAGES, "color": np.zeros(1)}
+    failed = Trial(PROFILES["d3d11"], judge(box_case(), handed, PROFILES["d3d11"]))
+    assert needed(box_case(), handed, failed) == {}
+    found = needed(box_case(), handed, failed, limits=True)
+    assert tuple(f"{name}={value}" for name, value in found.items()) == numbers
+
+
 def test_the_loosest_grants_what_any_other_does() -> None:
     loosest = PROFILES[LOOSEST]
     for device in PROFILES.values():

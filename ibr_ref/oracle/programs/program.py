@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar, Self
+
+import numpy as np
 
 from ibr_ref.oracle.arithmetic.device import Arithmetic, Policy
 
@@ -16,6 +18,9 @@ Ints = Any
 Bools = Any
 """Decided, or a `Truth`."""
 PROGRAMS = __name__.rpartition(".")[0]
+Path = tuple[str | int, ...]
+"""Where a number of a case stands: fields and indices from "scene" or "params" on, `EACH` for all of a sequence."""
+EACH = -1
 
 
 def right(program: Any, *names: str) -> bool:
@@ -26,7 +31,18 @@ def right(program: Any, *names: str) -> bool:
 def overridden(kind: type[Any], right: type[Any]) -> set[str]:
     """The names of which a program with a bug has others than the right one."""
     own = {name for each in kind.__mro__ if not issubclass(right, each) for name in vars(each)}
-    return own - {"__doc__", "__module__"}
+    return (own - {"__doc__", "__module__", "taken", "read_by"}) | {*kind.read_by}
+
+
+def changed(whole: Any, path: Path, value: Any) -> Any:
+    """Something with another number in it; raises ValueError where that is not allowed."""
+    if not path:
+        return value
+    first, rest = path[0], path[1:]
+    if isinstance(first, str):
+        return replace(whole, **{first: changed(getattr(whole, first), rest, value)})
+    parts = [changed(part, rest, value) if first in (EACH, i) else part for i, part in enumerate(whole)]
+    return np.array(parts) if isinstance(whole, np.ndarray) else parts
 
 
 class Program:
@@ -34,13 +50,17 @@ class Program:
 
     limits: ClassVar[dict[str, Any]] = {}
     """Numbers of the device that a fault takes for others."""
-    taken: ClassVar[dict[str, Any]] = {}
-    """Parameters that a fault takes for others."""
+    taken: ClassVar[Mapping[Path, Any]] = {}
+    """Numbers of the case that a port takes for others."""
+    read_by: ClassVar[tuple[str, ...]] = ()
+    """Methods whose results these change, as if they were overridden."""
 
     def __init__(self, scene: Any, params: Any, policy: Policy, inputs: dict[str, Any]) -> None:
         """The case; `inputs`: what it hands over besides scene and parameters."""
-        self.scene = scene
-        self.params = replace(params, **self.taken) if self.taken else params
+        of = {"scene": scene, "params": params}
+        for (root, *path), value in self.taken.items():
+            of[str(root)] = changed(of[str(root)], tuple(path), value)
+        self.scene, self.params = of["scene"], of["params"]
         self.inputs = inputs
         self.do: Any
         self.on(Arithmetic(policy))

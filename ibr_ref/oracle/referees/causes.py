@@ -1,26 +1,39 @@
 """Which bug is it: the program of every known one is judged on the port's arrays as the right one is.
 
 A bug is named only if no element contradicts it, and some that is wrong is certainly explained by it. Some dozens of
-elements, right and wrong ones, are tried first; what explains them, on all.
+elements, right and wrong ones, are tried first; what explains them, on all. The right program with other numbers than the
+case's is tried the same way: those that ports have by mistake, and where nothing explains a stage those that fit its
+results, which the plain program finds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
 
-from ibr_ref.array_types import Bools
-from ibr_ref.oracle.faults.kinds import Mutant
+from ibr_ref.affine.rows import UNIT
+from ibr_ref.array_types import Bools, Floats
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.faults.kinds import Mutant, PlainPort
+from ibr_ref.oracle.faults.taken import LOOKS_LIKE, Setting, suspects
 from ibr_ref.oracle.findings import Cause
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
+from ibr_ref.oracle.referees.fitted import fitted
 
 FEW, SOME = 6, 40
 """Wrong elements that are tried first, up to twice as many; and next, with as many right ones."""
 MOST_ROWS = 100_000
 """Of programs that are run in all, forks too; what is not tried by then is not named, and the verdict says so."""
+EVIDENCE = 16
+"""Of the dozens of numbers that are tried one explains a few elements by chance."""
+LOOKED_AT = 256
+"""Wrong elements, and right ones, at which a number is fitted; results that jump are looked at everywhere."""
+SLACK = 16.0
+"""How far a port's results may be from the plain ones where a number is fitted, in units of theirs; it is judged after."""
 
 
 class Replay(Protocol):
@@ -84,13 +97,124 @@ class Inquiry:
         return Explanation(causes=())
 
     def recognizes(self, wrong: Judgement, name: str) -> bool:
-        """Whether the bug of that name explains every element of a stage; one that there is not explains none."""
+        """Whether the suspect of that name explains every element of a stage; one that there is not explains none."""
         suspects = _Suspects(self, wrong)
         return any(suspects.explains(mutant, None) for mutant in self.mutants if mutant.name == name)
 
 
 def _named(mutants: Sequence[Mutant]) -> tuple[Cause, ...]:
-    return tuple(Cause(name=m.name, says=m.fault) for m in mutants)
+    return tuple({m.name: Cause(name=m.name, says=m.fault) for m in mutants}.values())
+
+
+@dataclass(frozen=True, kw_only=True)
+class Numbers:
+    """What a case has that a port may have otherwise, and how it is drawn then."""
+
+    case: Case
+    port: type[PlainPort]
+    """The right program."""
+    settings: Sequence[Setting]
+    handed: Handed
+    draw: Callable[[Any, Bools], Mapping[str, Any]] = lambda program, among: program.render()
+    """A program's arrays, at least where elements are looked at."""
+    evidence: int = EVIDENCE
+    """Wrong elements from which on a number is believed."""
+
+    def listed(self) -> list[Mutant]:
+        """The right program with numbers that ports have by mistake."""
+        return suspects(self.port, self.case, self.settings)
+
+    def fitting(self, wrong: Judgement) -> Iterator[list[list[Mutant]]]:
+        """And with those that its results look like: of each number some values, those of the fewest digits first."""
+        for setting in self.settings:
+            if not isinstance(setting.value(self.case), int):
+                values = self._fitted(setting, wrong)
+                yield [setting.suspects(self.port, self.case, value, LOOKS_LIKE) for value in values]
+
+    def recognizes(self, inquiry: Inquiry, wrong: Judgement, name: str) -> bool:
+        """Whether the bug or the number of that name explains every element of a stage."""
+        told, _, value = name.partition(LOOKS_LIKE)
+        found = [
+            mutant
+            for setting in self.settings
+            if value and setting.name == told
+            for mutant in setting.suspects(self.port, self.case, float(value), LOOKS_LIKE)
+        ]
+        return replace(inquiry, mutants=[*inquiry.mutants, *self.listed(), *found]).recognizes(wrong, name)
+
+    def _fitted(self, setting: Setting, wrong: Judgement) -> list[float]:
+        among = np.ones_like(wrong.wrong) if setting.jumps else _spread_out(wrong.wrong)
+        names = [name for name in wrong.arrays if name in self.handed and not isinstance(self.handed[name], tuple)]
+
+        def draw(value: float) -> Floats | None:
+            if not setting.allows(self.case, value):
+                return None
+            kind = setting.port(self.port, value)
+            with np.errstate(all="ignore"):
+                program: Any = kind(self.case.scene, self.case.params, Policy(float_bits=64), self.case.inputs)
+                arrays = self.draw(program, among)
+            return _row(arrays, names, among)
+
+        target, slack = _row(self.handed, names, among), _slack(self.handed, names, among)
+        return fitted(float(setting.value(self.case)), draw, target, slack, jumps=setting.jumps)
+
+
+def explained(
+    inquiry: Inquiry,
+    numbers: Numbers,
+    wrong: Judgement,
+    *tiers: Collection[str],
+    likely: Callable[[Sequence[Mutant]], Sequence[Mutant]] = lambda suspects: suspects,
+) -> Explanation:
+    """The bugs and the numbers that explain every element of a stage.
+
+    likely: of suspects those that are worth a judgement.
+    """
+
+    def tried(suspects: Sequence[Mutant]) -> Explanation:
+        return replace(inquiry, mutants=likely(suspects)).causes(wrong, *tiers)
+
+    def first(values: Sequence[Sequence[Mutant]]) -> tuple[Cause, ...]:
+        return next((causes for each in values if (causes := tried(each).causes)), ())
+
+    found = tried(inquiry.mutants)
+    if wrong.wrong.sum() < numbers.evidence:
+        return found
+    causes = [*found.causes, *tried(numbers.listed()).causes]
+    if not causes:
+        causes = [cause for values in numbers.fitting(wrong) for cause in first(values)]
+    return replace(found, causes=tuple(causes))
+
+
+def _spread_out(wrong: Bools) -> Bools:
+    """Wrong elements and right ones, from everywhere."""
+    among = np.zeros(wrong.size, np.bool_)
+    for some in (np.flatnonzero(wrong), np.flatnonzero(~wrong)):
+        among[some[:: max(1, len(some) // LOOKED_AT)]] = True
+    return among.reshape(wrong.shape)
+
+
+def _some(array: Any, among: Bools) -> Any:
+    """Of an array's elements, where they are those that are judged; else all."""
+    array = np.asarray(array)
+    return array[among] if array.shape[: among.ndim] == among.shape else array
+
+
+def _row(arrays: Mapping[str, Any], names: Sequence[str], among: Bools) -> Floats:
+    """(n,) the numbers of arrays, colours from 0 to 1."""
+    some = [_some(arrays[name], among) for name in names]
+    rows = [x.astype(np.float64).reshape(-1) / (255.0 if x.dtype == np.uint8 else 1.0) for x in some]
+    return np.concatenate([np.zeros(0), *rows])
+
+
+def _slack(arrays: Mapping[str, Any], names: Sequence[str], among: Bools) -> Floats:
+    """(n,) how far they may be from plain ones."""
+    some = [_some(arrays[name], among) for name in names]
+    rows = [
+        np.full(x.size, 0.5 / 255.0) if x.dtype == np.uint8 else SLACK * UNIT * np.fmax(np.abs(x.reshape(-1)), UNIT)
+        for x in some
+    ]
+    return np.concatenate([np.zeros(0), *rows])
 
 
 class _Suspects:

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.oracle.programs.displacement import Port
+from ibr_ref.oracle.referees.moved import with_light, with_params
 from tests.oracle.displacement.drawn import REFEREE, Arrays, case, draw, image
 
 STAGED = (
@@ -76,6 +78,28 @@ def test_a_right_port_with_another_parameter_is_named_so(name: str, taken: dict[
     found = named(name, arrays)
     (field, value), *_ = taken.items()
     assert found == [f"{field} = {value}"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "other"),
+    [
+        ("steep_threshold", 0.105, with_params(case("displacement-slope"), steep_threshold=0.105)),
+        ("light.diffuse", 1.17, with_light(case("displacement-slope"), diffuse=1.17)),
+    ],
+)
+def test_a_number_that_was_not_guessed_is_found(name: str, value: float, other: Case) -> None:
+    """A bound up to where the next pixel jumps."""
+    (found,) = named("displacement-slope", Port(other.scene, other.params, Policy(), {}).render())
+    told, _, looks_like = found.partition(" looks like ")
+    assert (told, float(looks_like)) == (name, pytest.approx(value, rel=0.01))
+
+
+def test_what_a_bug_and_a_number_explain_is_named_by_both() -> None:
+    """Of 25 steps the first 24 are those of "step of 1/(N + 1)"; no ray here hits at the last."""
+    name = "displacement-relief"
+    other = with_params(case(name), linear_steps=25)
+    arrays = Port(other.scene, other.params, Policy(), {}).render()
+    assert named(name, arrays) == ["step of 1/(N + 1)", "linear_steps = 25"]
 
 
 def test_nor_is_one_that_no_suspect_has() -> None:

@@ -6,9 +6,12 @@ from typing import Any
 
 import pytest
 
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.shadows import MUTANTS, Port
 from ibr_ref.oracle.programs.shadows.raster import Raster
+from ibr_ref.oracle.referees.moved import with_light, with_params, with_scene
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from tests.oracle.judgements import picture
 from tests.oracle.shadows.judged import REFEREE, Arrays, case, drawn
@@ -50,6 +53,33 @@ def test_the_bug_is_named(mutant: str) -> None:
 
 def test_the_bug_is_named_by_the_picture_alone() -> None:
     assert named(BOX, picture(broken(BOX, "resolve-bgr"))) == ["resolve-bgr"]
+
+
+DEPTHS, NEAREST = "shadows-depths", "shadows-nearest"
+
+
+def taken(other: Case) -> Arrays:
+    """A right port of another case."""
+    return Port(other.scene, other.params, Policy(), other.inputs).render()
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "says"),
+    [
+        (BOX, with_scene(case(BOX), ambient=0.46), ["ambient = 0.46"]),
+        (BOX, with_scene(case(BOX), ambient=0.241), ["ambient looks like 0.241"]),
+        (NEAREST, with_params(case(NEAREST), map_samples=3), ["map_samples = 3"]),
+        (DEPTHS, with_params(case(DEPTHS), bias=0.008), ["project-bias-doubled", "bias = 0.008"]),
+        (DEPTHS, with_params(case(DEPTHS), bias=0.0013), ["bias looks like 0.0014"]),  # as good
+        (DEPTHS, with_light(case(DEPTHS), far=8.1), ["light.far looks like 8.1"]),
+    ],
+)
+def test_a_right_port_with_another_number_is_named_so(name: str, other: Case, says: list[str]) -> None:
+    assert named(name, taken(other)) == says
+
+
+def test_nor_is_one_that_no_suspect_has() -> None:
+    assert named(NEAREST, taken(with_params(case(NEAREST), map_samples=7))) == []
 
 
 class _TooWide(Raster):

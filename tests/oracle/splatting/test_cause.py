@@ -7,8 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.splatting import MUTANTS, Port
+from ibr_ref.oracle.referees.moved import with_light, with_params
 from tests.oracle.judgements import in_bytes, picture
 from tests.oracle.splatting.judged import REFEREE, Arrays, case, drawn
 
@@ -54,6 +57,38 @@ def test_the_bug_is_named_by_the_picture_alone(mutant: str) -> None:
 def test_what_looks_alike_is_named_together() -> None:
     """Bytes that are rounded down and bytes over 256 are the same where no byte is 255."""
     assert named(broken("bytes-over-256")) == ["truncated-bytes", "bytes-over-256"]
+
+
+def taken(other: Case) -> Arrays:
+    """A right port of another case."""
+    return Port(other.scene, other.params, Policy(), other.inputs).render()
+
+
+@pytest.mark.parametrize(
+    ("other", "says"),
+    [
+        (with_params(case(LAMP), beta=0.14), "beta = 0.14"),
+        (with_params(case(LAMP), max_width=3.52), "max_width looks like 3.52"),
+        (with_light(case(LAMP), ambient=0.4), "light.ambient = 0.4"),
+        (with_light(case(LAMP), specular=0.62), "light.specular looks like 0.62"),
+    ],
+)
+def test_a_right_port_with_another_number_is_named_so(other: Case, says: str) -> None:
+    assert named(taken(other)) == [says]
+
+
+@pytest.mark.parametrize(
+    "other",
+    [with_light(case(LAMP), exponent=47), with_light(case(LAMP), ambient=0.21, diffuse=0.72)],
+    ids=["whole", "two"],
+)
+def test_nor_are_a_whole_number_that_no_suspect_has_and_two_at_once(other: Case) -> None:
+    assert named(taken(other)) == []
+
+
+def test_a_bug_that_is_a_number_is_named_with_it() -> None:
+    found = named(taken(with_light(case(LAMP), exponent=61)))
+    assert found == ["exponent-one-more", "light.exponent = 61"]
 
 
 class _Unknown(Port):

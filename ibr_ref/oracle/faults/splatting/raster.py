@@ -61,6 +61,15 @@ class _AtLeastOnePixel(Port):
         return np.maximum(width, 1.0)
 
 
+@RASTER.add("an-eighth-beside")
+class _AnEighthBeside(Port):
+    """Point sprites lie 1/8 pixel to the right of and below their points, as softpipe draws them: quads do not."""
+
+    def borders(self, center: Floats, half: Floats) -> tuple[Floats, Floats]:
+        low, high = super().borders(center, half)
+        return low + 0.125, high + 0.125
+
+
 @RASTER.add("less-or-equal", hidden="points that tie are twins, of the same colour")
 class _LessOrEqual(Port):
     """On a tie the later splat wins: LEQUAL."""

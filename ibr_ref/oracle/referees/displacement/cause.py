@@ -2,77 +2,81 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.displacement import MUTANTS
-from ibr_ref.oracle.faults.kinds import Mutant
-from ibr_ref.oracle.faults.taken import suspects
+from ibr_ref.oracle.faults.taken import Setting
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.programs.displacement.raster import Raster
 from ibr_ref.oracle.programs.displacement.vertex import Vertex
-from ibr_ref.oracle.programs.program import overridden
-from ibr_ref.oracle.referees.causes import Inquiry
+from ibr_ref.oracle.programs.program import EACH, overridden
+from ibr_ref.oracle.referees.causes import EVIDENCE, Inquiry, Numbers, explained
 from ibr_ref.oracle.referees.displacement.likely import likely
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.replay import ARRAYS, Port
 from ibr_ref.oracle.referees.displacement.stages import Stages
 from ibr_ref.searches import SEARCHES
 
-FACES = (frozenset(dir(Vertex)) | frozenset(dir(Raster))) - {"taken"}
+FACES = frozenset(dir(Vertex)) | frozenset(dir(Raster))
 """What vertex processing and rasterization call: a program that changes none of it has the right one's fragments."""
-NUMBERS = ("linear_steps", "binary_steps", "steep_threshold", "min_steps", "max_steps", "distance_layers")
-"""Parameters of searches."""
-LIT = ("shadow_steps", "shadow_bias")
-"""Those of self-shadow."""
-EVIDENCE = 16
-"""Wrong elements from which on a parameter is believed: of the dozen numbers that are tried one explains a few by chance."""
+NUMBERS = ("linear_steps", "binary_steps", "min_steps", "max_steps", "distance_layers", "lod_bias", "steep_threshold")
+"""Parameters of searches; the last is a bound."""
+CORNERS = 3
+"""Wrong vertices from which on a number is believed: each has seven, and none of them jumps."""
+LIT = ("ambient", "diffuse", "specular", "exponent")
+"""Numbers of the light."""
 
 
 def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
     """The bugs that explain every element of a stage.
 
     Bugs of the stage first, then, where none of them does, those that may hide in it. Of a picture those of all stages whose
-    pictures are like it. Where no bug does, the right program with another parameter.
+    pictures are like it. And the numbers of the case that do, or that the port's results look like.
     """
-    inquiry = _inquiry(case, device, handed)
-    found = _found(case, handed, wrong, inquiry)
-    if found.causes or wrong.wrong.sum() < EVIDENCE:
-        return found
-    causes = _found(case, handed, wrong, replace(inquiry, mutants=_taken(case))).causes
-    return replace(found, causes=causes)
-
-
-def _found(case: Case, handed: Handed, wrong: Judgement, inquiry: Inquiry) -> Explanation:
-    """Those of the suspects that explain it."""
+    inquiry, numbers = _inquiry(case, device, handed), _numbers(case, handed, wrong.stage)
     if wrong.stage == "image":
-        few = likely(case, handed, wrong.wrong, inquiry.mutants)
-        return replace(inquiry, mutants=few).causes(wrong, inquiry.arrays)
+        return explained(
+            inquiry, numbers, wrong, inquiry.arrays, likely=lambda some: likely(case, handed, wrong.wrong, some)
+        )
     hidden = inquiry.hidden_in(wrong.stage, handed)
     if wrong.stage == "shade" and "color" in wrong.arrays:  # by the depth test another polygon's are shown
         hidden.append("resolve")
-    return inquiry.causes(wrong, (wrong.stage,), hidden)
+    return explained(inquiry, numbers, wrong, (wrong.stage,), hidden)
 
 
 def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
     """Whether the bug of that name explains every element of a stage; one that there is not explains none."""
-    inquiry = _inquiry(case, device, handed)
-    if all(mutant.name != cause for mutant in inquiry.mutants):
-        inquiry = replace(inquiry, mutants=_taken(case))
-    return inquiry.recognizes(wrong, cause)
+    return _numbers(case, handed, wrong.stage).recognizes(_inquiry(case, device, handed), wrong, cause)
 
 
-def _taken(case: Case) -> list[Mutant]:
-    """The right program with other parameters, those that the case reads."""
-    reads = SEARCHES[case.params.method].reads
-    stages = {name: "march" for name in NUMBERS if name in reads}
+def _numbers(case: Case, handed: Handed, stage: str) -> Numbers:
+    """Those that the case reads."""
+    reads, light = SEARCHES[case.params.method].reads, ("scene", "light")
+    settings = [
+        Setting(path=("params", name), stages=("march",), jumps=name == NUMBERS[-1])
+        for name in NUMBERS
+        if name in reads
+    ]
+    settings += [Setting(path=(*light, name), stages=("shade",)) for name in LIT]
     if case.params.shadow_steps:
-        stages |= dict.fromkeys(LIT, "shade")
-    return suspects(Program, case.params, stages)
+        settings += [
+            Setting(path=("params", "shadow_steps"), stages=("shade",)),
+            Setting(path=("params", "shadow_bias"), stages=("shade",), jumps=True),
+        ]
+    if len({polygon.height_scale for polygon in case.scene.polygons}) == 1:
+        path = ("scene", "polygons", EACH, "height_scale")
+        settings.append(Setting(path=path, stages=("vertex",), read_by=("up",)))
+
+    def draw(program: Any, among: Bools) -> dict[str, Any]:
+        found: dict[str, Any] = program.render() if stage == "vertex" else program.render(among | program.rows(among))
+        return found
+
+    evidence = CORNERS if stage == "vertex" else EVIDENCE
+    return Numbers(case=case, port=Program, settings=settings, handed=handed, draw=draw, evidence=evidence)
 
 
 def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:

@@ -9,8 +9,10 @@ from typing import Any
 from ibr_ref.array_types import Bools
 from ibr_ref.oracle.faults.shadows import MUTANTS
 from ibr_ref.oracle.faults.shadows.hidden import GIVEN
+from ibr_ref.oracle.faults.taken import Setting
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
-from ibr_ref.oracle.referees.causes import Inquiry
+from ibr_ref.oracle.programs.shadows import Port as Program
+from ibr_ref.oracle.referees.causes import Inquiry, Numbers, explained
 from ibr_ref.oracle.referees.shadows.image import Accepted
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.stages import PARTS, judged
@@ -63,18 +65,46 @@ class Replay:
 def causes(right: Inputs, handed: Handed, wrong: Judgement) -> Explanation | None:
     """The bugs that explain every element of a part of a stage.
 
-    Bugs of the stage first, then, where none of them does, those that may hide in it; of a picture those of all stages.
+    Bugs of the stage first, then, where none of them does, those that may hide in it; of a picture those of all stages. And
+    the numbers of the case that do, or that the port's results look like.
     """
-    inquiry, part = _inquiry(right), _part(wrong)
+    inquiry, numbers, part = _inquiry(right), _numbers(right, handed), _part(wrong)
     if part == "image":
-        return inquiry.causes(replace(wrong, stage=part), [*FIRST.values()])
+        return explained(inquiry, numbers, replace(wrong, stage=part), [*FIRST.values()])
     hidden = {FIRST[PARTS[each][0]] for each in inquiry.hidden_in(part, handed)}
-    return inquiry.causes(replace(wrong, stage=part), (FIRST[wrong.stage],), hidden - {FIRST[wrong.stage]})
+    return explained(inquiry, numbers, replace(wrong, stage=part), (FIRST[wrong.stage],), hidden - {FIRST[wrong.stage]})
 
 
 def recognizes(right: Inputs, wrong: Judgement, cause: str) -> bool:
     """Whether the bug of that name explains every element of a part of a stage, or of a picture."""
-    return _inquiry(right).recognizes(replace(wrong, stage=_part(wrong)), cause)
+    part = replace(wrong, stage=_part(wrong))
+    return _numbers(right, right.picture or right.handed).recognizes(_inquiry(right), part, cause)
+
+
+def _numbers(right: Inputs, handed: Handed) -> Numbers:
+    """Those of maps, of comparisons and of the light."""
+    case = right.case
+    mask, maps = case.params.content == "mask", "warp" if right.direct else "maps"
+    frustum, given = ("caster_clip", "moved_clip"), right.picture and not right.direct
+    settings = [Setting(path=("scene", "ambient"), stages=("resolve",), read_by=("ambient",))]
+    if not mask:
+        settings.append(
+            Setting(path=("params", "bias"), stages=("project",), read_by=("biased",), jumps=not case.params.pcf)
+        )
+    if not given:  # a picture is made with the maps that the case hands over
+        settings += [Setting(path=("params", "map_samples"), stages=(maps,), read_by=("share",))] if mask else []
+    if right.direct and right.picture:  # else the arrays' shapes say it
+        settings += [
+            Setting(path=("params", "map_size"), stages=(maps,), read_by=frustum),
+            Setting(path=("params", "light_samples"), stages=(maps,), read_by=("sample_places",), among=(1, 5, 9)),
+        ]
+    light = ("near", "far") if not mask else ()
+    settings += [
+        Setting(path=("scene", "light", name), stages=(maps, "project"), read_by=frustum)
+        for name in (*light, "vertical_fov")
+    ]
+    settings = [replace(each, stages=tuple(FIRST[stage] for stage in each.stages)) for each in settings]
+    return Numbers(case=case, port=Program, settings=settings, handed=handed)
 
 
 def _part(wrong: Judgement) -> str:

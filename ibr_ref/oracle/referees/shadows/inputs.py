@@ -78,7 +78,7 @@ class Inputs:
     @property
     def count(self) -> int:
         """Light samples."""
-        given = self.case.params.light_samples
+        given = self.model.program.params.light_samples
         return len(given) if isinstance(given, np.ndarray) else int(given)
 
     @cached_property

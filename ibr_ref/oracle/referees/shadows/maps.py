@@ -59,7 +59,7 @@ class Drawn:
 def drawn(model: Model, raster: Raster, clip: Sequence[Any]) -> Drawn:
     """The caster in a window, of clip coordinates (V,)."""
     case, mask = model.case, model.case.params.content == "mask"
-    size = int(case.params.map_size) * (int(case.params.map_samples) if mask else 1)
+    size = int(model.program.params.map_size) * (int(model.program.params.map_samples) if mask else 1)
     caster, window = case.scene.caster, Pass(model, raster, size, size)
     cut = window.cut([model.bounded(x) for x in clip], np.asarray(caster.triangles), names_of(caster.vertices))
     found = window.cover(cut.x, cut.y)
@@ -89,7 +89,7 @@ def rendered(model: Model, raster: Raster, clip: Sequence[Any], reference: Float
     """The map that is drawn of the caster; reference (S, S): as exact arithmetic has it."""
     found = drawn(model, raster, clip)
     if model.case.params.content == "mask":
-        low, high = (counts(each, int(model.case.params.map_samples)) for each in found.covered)
+        low, high = (counts(each, int(model.program.params.map_samples)) for each in found.covered)
         none = np.zeros(reference.shape, np.bool_)
         return Map(Bounded(reference, np.zeros_like(reference), model.device), low, high, none)
     return _depths(found, reference, model.device)
@@ -97,9 +97,9 @@ def rendered(model: Model, raster: Raster, clip: Sequence[Any], reference: Float
 
 def hull(model: Model, raster: Raster, clip: Sequence[Any]) -> Bounded:
     """(S, S) all that the texels may be, and what lies between."""
-    found, size = drawn(model, raster, clip), int(model.case.params.map_size)
+    found, size = drawn(model, raster, clip), int(model.program.params.map_size)
     if model.case.params.content == "mask":
-        low, high = (counts(each, int(model.case.params.map_samples)) for each in found.covered)
+        low, high = (counts(each, int(model.program.params.map_samples)) for each in found.covered)
     else:
         low, high = (end.reshape(size, size) for end in _hull(found, size * size))
     return centered(low, high, model.device)
@@ -139,7 +139,7 @@ def allows(model: Model, raster: Raster, clip: Sequence[Any], image: Floats) -> 
     """(S, S) each, of a port's own map: whether it is legal, whether another outcome is, and the width of what is."""
     found, device = drawn(model, raster, clip), model.device
     if model.case.params.content == "mask":
-        k = int(model.case.params.map_samples)
+        k = int(model.program.params.map_samples)
         low, high = (counts(each, k) for each in found.covered)
         with np.errstate(invalid="ignore"):
             share = np.rint(image * (k * k)) / (k * k)

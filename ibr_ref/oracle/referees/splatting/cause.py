@@ -8,26 +8,48 @@ from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.splatting import MUTANTS
+from ibr_ref.oracle.faults.taken import Setting
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
-from ibr_ref.oracle.referees.causes import Inquiry
+from ibr_ref.oracle.programs.splatting import Port as Program
+from ibr_ref.oracle.referees.causes import Inquiry, Numbers, explained
 from ibr_ref.oracle.referees.splatting.model import Model, model_of
 from ibr_ref.oracle.referees.splatting.stages import ARRAYS, Stages
+
+LAW = ("alpha", "beta", "gamma", "delta")
+"""Numbers of the widths' law."""
+WIDTHS = ("min_width", "max_width")
+LIT = {"ambient": "received", "diffuse": "received", "specular": "highlight", "exponent": "exponent"}
+"""Numbers of the light, and the method that reads each."""
 
 
 def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Explanation | None:
     """The bugs that explain every element of a stage.
 
-    Bugs of the stage first, then, where none of them does, those that may hide in it; of a picture those of all stages.
+    Bugs of the stage first, then, where none of them does, those that may hide in it; of a picture those of all stages. And
+    the numbers of the case that do, or that the port's results look like.
     """
-    inquiry = _inquiry(case, device, handed)
+    inquiry, numbers = _inquiry(case, device, handed), _numbers(case, handed)
     if wrong.stage == "image":
-        return inquiry.causes(wrong, ARRAYS)
-    return inquiry.causes(wrong, (wrong.stage,), inquiry.hidden_in(wrong.stage, handed))
+        return explained(inquiry, numbers, wrong, ARRAYS)
+    return explained(inquiry, numbers, wrong, (wrong.stage,), inquiry.hidden_in(wrong.stage, handed))
 
 
 def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
     """Whether the bug of that name explains every element of a stage, or of a picture."""
-    return _inquiry(case, device, handed).recognizes(wrong, cause)
+    return _numbers(case, handed).recognizes(_inquiry(case, device, handed), wrong, cause)
+
+
+def _numbers(case: Case, handed: Handed) -> Numbers:
+    """Those of the law, of the light and of the background."""
+    light = case.scene.light
+    settings = [Setting(path=("params", name), stages=("vertex",), read_by=("width",)) for name in LAW]
+    settings += [Setting(path=("params", name), stages=("vertex",), read_by=("clamp_width",)) for name in WIDTHS]
+    if light is not None:
+        settings += [
+            Setting(path=("scene", "light", name), stages=("vertex",), read_by=(method,))
+            for name, method in LIT.items()
+        ]
+    return Numbers(case=case, port=Program, settings=settings, handed=handed)
 
 
 def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:

@@ -1,0 +1,45 @@
+"""Numbers are found from results: smooth ones, bounds that they jump at, and none where it is another fault."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ibr_ref.oracle.referees.fitted import fitted
+
+X = np.linspace(0.1, 3.0, 97)
+SLACK = np.full(97, 1e-6)
+
+
+def power(value: float) -> np.ndarray | None:
+    """Nothing below 0."""
+    return X**value if value >= 0.0 else None
+
+
+def beyond(value: float) -> np.ndarray | None:
+    return np.where(value < X, 1.0, 0.0)
+
+
+@pytest.mark.parametrize(("start", "value"), [(2.0, 2.17), (2.0, 0.4), (0.0, 1.3)])
+def test_a_smooth_one(start: float, value: float) -> None:
+    noise = np.random.default_rng(1).uniform(-1e-7, 1e-7, 97)
+    found = fitted(start, power, X**value + noise, SLACK, jumps=False)
+    assert value in found
+    assert found[0] == float(f"{value:.1g}")
+
+
+@pytest.mark.parametrize(("start", "value"), [(1.0, 1.52), (1.0, 0.31), (1.5, 2.8)])
+def test_a_bound(start: float, value: float) -> None:
+    target = np.where(value < X, 1.0, 0.0)
+    found = fitted(start, beyond, target, SLACK, jumps=True)
+    assert any(np.array_equal(beyond(x), target) for x in found)
+
+
+@pytest.mark.parametrize("jumps", [False, True])
+def test_another_fault(jumps: bool) -> None:
+    target = np.random.default_rng(2).uniform(0.0, 1.0, 97)
+    assert fitted(1.0, beyond if jumps else power, target, SLACK, jumps=jumps) == []
+
+
+def test_results_of_another_number() -> None:
+    assert fitted(1.0, power, np.zeros(5), np.zeros(5), jumps=False) == []
