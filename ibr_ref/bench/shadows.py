@@ -135,9 +135,9 @@ def softened(mesh: Mesh, size: int, repeat: int) -> list[dict[str, Any]]:
         "direct, 9 samples": lambda: shadows.render(scene, direct, stages=False),
         "warp, 9 samples": lambda: shadows.render(scene, nine, maps=maps, stages=False),
     }
-    for method in ("convolution", "pcss"):
-        soft = shadows.SoftParams(method=method, map_size=size)
-        frames[method] = partial(shadows.render_soft, scene, soft, stages=False)
+    convolved = shadows.SoftParams(method="convolution", map_size=size)
+    frames["convolution"] = partial(shadows.render_soft, scene, convolved, stages=False)
+    frames["pcss"] = partial(shadows.render, scene, shadows.Params(method="pcss", map_size=size), stages=False)
     return [
         row("kettle", f"frame ({way})", size, best_and_median(frame, repeat), None) for way, frame in frames.items()
     ]

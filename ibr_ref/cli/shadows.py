@@ -57,7 +57,7 @@ class Method(StrEnum):
     @property
     def soft(self) -> bool:
         """Drawn by `render_soft`."""
-        return self in (Method.traced, Method.convolution, Method.pcss)
+        return self in (Method.traced, Method.convolution)
 
 
 class Policy(StrEnum):
@@ -168,7 +168,11 @@ def read(
     )
     several = len(ensemble.pairs) > 1 or bool(light_power)
     if several:
-        alone = {f"--method {method.value}": method.soft, f"--maps {maps}": maps, f"--case {case}": case}
+        alone = {
+            f"--method {method.value}": method.soft or method is Method.pcss,
+            f"--maps {maps}": maps,
+            f"--case {case}": case,
+        }
         shadows_several.check_goes_with(ensemble, alone)
     first = ensemble.scene(0, 0)
     scene = ensemble if several else first
@@ -254,7 +258,8 @@ def command(
         shadows_several.say_cut(scene, params)
     elif not soft:
         own_case.write(case, scene, params, **inputs)
-        emptiness.say_cut(shadows.cut_by_light(scene, params))
+        if params.method != "pcss":  # whose map is not the light's own
+            emptiness.say_cut(shadows.cut_by_light(scene, params))
 
 
 def _kept(path: Path) -> bool:
@@ -294,7 +299,7 @@ def _prepared(
 
 def goes_with() -> dict[str, Beside]:
     """Beside which others each option is read."""
-    from ibr_ref.shadows.inputs import METHODS, READ_BY
+    from ibr_ref.shadows.inputs import MAPPED, METHODS, READ_BY
     from ibr_ref.shadows.soft import READ_BY as SOFT
     from ibr_ref.shadows.soft import SOFT_METHODS
 
@@ -307,15 +312,15 @@ def goes_with() -> dict[str, Beside]:
         **always("near", "far", "size", "report", "stages", "depth_set"),
         "case": Beside(own_case.WHY, {"method": named("shadows").judged[1]}),
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
-        "samples": Beside("others take the whole light", {"method": METHODS}),
+        "samples": Beside("others take the whole light", {"method": MAPPED}),
         "light_size": Beside(
-            "light_size is that of more than its centre", {"method": SOFT_METHODS}, {"samples": (5, 9)}
+            "light_size is that of more than its centre", {"method": (*SOFT_METHODS, "pcss")}, {"samples": (5, 9)}
         ),
         "map_size": Beside("rays need no map_size", {"method": (*METHODS, *SOFT["map_size"])}),
         "map_samples": Beside(
-            "map_samples count coverage", {"method": METHODS, "content": "mask"}, {"method": SOFT["map_samples"]}
+            "map_samples count coverage", {"method": MAPPED, "content": "mask"}, {"method": SOFT["map_samples"]}
         ),
-        "content": Beside("others do not read content", {"method": METHODS}),
+        "content": Beside("others do not read content", {"method": MAPPED}),
         "rows": warped("rows"),
         "columns": warped("columns"),
         "policy": warped("policy"),

@@ -26,14 +26,16 @@ class Drawing:
 def one(scene: Scene, params: Params, maps: Maps | None) -> Drawing:
     """One caster under one light; where no good maps were found standard error says so."""
     from ibr_ref import shadows
-    from ibr_ref.cli.shadows_report import poor_line, report_lines
+    from ibr_ref.cli.shadows_report import poor_line, report_lines, soft_report_line
 
     poor = None if maps is None else poor_line(maps)
     if poor:
         typer.echo(poor, err=True)
     return Drawing(
         render=lambda scene, keep, **rows: shadows.render(scene, params, maps=maps, stages=keep, **rows),
-        report=lambda frame: report_lines(scene, params, frame, maps),
+        report=lambda frame: (
+            [soft_report_line(scene, frame)] if params.method == "pcss" else report_lines(scene, params, frame, maps)
+        ),
     )
 
 

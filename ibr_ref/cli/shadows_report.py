@@ -70,10 +70,10 @@ def poor_line(maps: Maps) -> str | None:
 
 
 def soft_report_line(scene: Scene, frame: Frame) -> str:
-    """A frame of `render_soft` with stages beside the one by rays."""
+    """A frame with stages that takes the whole light beside the one by rays."""
     from ibr_ref import shadows
 
-    ours = frame.stages["soft.shadow"]
+    ours = frame.stages["soft.shadow" if "soft.shadow" in frame.stages else "accumulate.shadow"]
     theirs = shadows.render_soft(scene, shadows.SoftParams(method="traced")).stages["soft.shadow"]
     return (
         f"shadow in the picture against rays: IoU {iou(ours, theirs):.3f}, "

@@ -32,6 +32,21 @@ def shares_in_cell(depths: np.ndarray | None, cell: Sequence[int], fraction: Seq
     return share(s, w00, w10), share(s, w01, w11), share(t, (1 - s) * w00 + s * w10, (1 - s) * w01 + s * w11)
 
 
+def place_in_grid(scene: Any, count: int, offset: np.ndarray) -> tuple[list[np.ndarray], tuple[float, ...]]:
+    """Of n x n maps the four around an offset: the object's offsets in them (00, 10, 01, 11), and the fractions s and t."""
+    widening = np.abs([sample.displacement for sample in scene.light_samples]).max(axis=0)
+    ends = np.asarray(scene.offset_range, float)
+    low, high = ends[:, 0] - widening, ends[:, 1] + widening
+    place = (np.asarray(offset, float) - low) / (high - low) * (count - 1)
+    cell = np.clip(np.floor(place), 0, count - 2)
+
+    def position(steps: tuple[int, int]) -> np.ndarray:
+        share = (cell + steps) / (count - 1)
+        return np.asarray(low * (1.0 - share) + high * share)
+
+    return [position(steps) for steps in ((0, 0), (1, 0), (0, 1), (1, 1))], tuple((place - cell).tolist())
+
+
 def offset_in_world(scene: Any, offset: np.ndarray) -> tuple[float, ...]:
     """x a + y b."""
     return tuple((np.asarray(offset, float) @ np.asarray(scene.offset_axes, float)).tolist())

@@ -3,10 +3,10 @@
 `maps = prepare(Scene, Params)` renders the nine maps of the caster alone and places their control points;
 `render(Scene, Params, maps=maps)` draws a frame for any offset of the caster: six warps (or three) a light sample,
 however many triangles the caster has. `method="direct"` renders a map for every sample instead; `method="grid"` takes n
-x n maps made beforehand (`prepare_grid`) without a warp, raw or compressed by Haar wavelets. `shadow_maps` gives the
-maps alone. `render_soft(Scene, SoftParams)` softens the shadow by other ways than samples of the light, to compare
-with: rays, a convolution, and percentage-closer filtering (`help(ibr_ref.shadows.soft)`). `Ensemble`, `prepare_ensemble`
-and `render_ensemble` do the same for several casters under several lights.
+x n maps made beforehand (`prepare_grid`) without a warp, raw or compressed by Haar wavelets; `method="pcss"` softens one
+map by the light's size, as percentage-closer soft shadows do. `shadow_maps` gives the maps alone. `render_soft(Scene,
+SoftParams)` softens the shadow by ways to compare with: rays, and a convolution (`help(ibr_ref.shadows.soft)`).
+`Ensemble`, `prepare_ensemble` and `render_ensemble` draw several casters under several lights.
 
 `ibr-ref method shadows` prints the method, stage by stage: formulas, ties, every array with shape, dtype and "nothing",
 and what the paper leaves open (`method.md` beside this file). `contract.STAGES` is the table of the arrays.

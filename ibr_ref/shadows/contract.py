@@ -6,6 +6,7 @@ from ibr_ref.contract import StageArray
 
 _INF = float("inf")
 _WARP = 'method="warp"'
+_SOFT = 'method="pcss"'
 _PACED = 'method="warp", interpolation="projective"'
 
 STAGES: dict[str, StageArray] = {
@@ -76,11 +77,27 @@ STAGES: dict[str, StageArray] = {
     "project.coord": StageArray(
         shape=("H", "W", 3),
         dtype="float64",
-        meaning="(s, t, r), t downwards, r clamped to [0, 1]",
+        meaning='(s, t, r), t downwards, r clamped to [0, 1]; "pcss": r the distance from the light\'s plane',
         nothing=0.0,
         per_sample=True,
     ),
     "project.shadow": StageArray(shape=("H", "W"), dtype="float64", meaning="0 lit to 1", nothing=0.0, per_sample=True),
+    "project.blocker": StageArray(
+        shape=("H", "W"),
+        dtype="float64",
+        meaning="mean distance of the blockers that were found from the light's plane; 0 without any",
+        nothing=0.0,
+        per_sample=True,
+        only=_SOFT,
+    ),
+    "project.penumbra": StageArray(
+        shape=("H", "W"),
+        dtype="float64",
+        meaning="1/blocker - 1/r, by which the light's points are scaled on the map; 0 without a blocker",
+        nothing=0.0,
+        per_sample=True,
+        only=_SOFT,
+    ),
     "project.margin": StageArray(
         shape=("H", "W"),
         dtype="float64",

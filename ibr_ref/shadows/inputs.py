@@ -19,11 +19,15 @@ CONTENTS = ("mask", "depth")
 POLICIES = ("dissolve", "nearest")
 INTERPOLATIONS = ("linear", "projective")
 ACCUMULATIONS = ("float", "unorm8")
-METHODS = ("warp", "direct", "grid")
+MAPPED = ("warp", "direct", "grid")
+"""Methods that have a map for each sample of the light."""
+METHODS = (*MAPPED, "pcss")
 STORAGES = ("raw", "haar")
 READ_BY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("rows", "columns", "policy", "interpolation"), ("warp",)),
     **dict.fromkeys(("grid_size", "grid_mix", "grid_storage"), ("grid",)),
+    **dict.fromkeys(("content", "map_samples", "quantize", "pcf", "light_samples"), MAPPED),
+    **dict.fromkeys(("search_points", "filter_points"), ("pcss",)),
 }
 """Fields of `Params` that only some methods read, and these."""
 SAMPLE_COUNTS = (1, 5, 9)
@@ -34,6 +38,8 @@ FINEST_MAP = 16384
 """Largest S k: maps are rendered at that size."""
 MOST_CONTROLS = 256
 """Largest R and C."""
+MOST_POINTS = 4096
+"""Of either of the percentage-closer filter's regions."""
 MOST_GRID_BYTES = 2**32
 """Of all maps of a grid."""
 
@@ -64,6 +70,8 @@ LIMITS: dict[str, Limit] = {
     "grid_mix": Flag(),
     "grid_storage": Word(STORAGES),
     "grid_threshold": Real(low=0.0, high=1.0),
+    "search_points": Whole(1, MOST_POINTS),
+    "filter_points": Whole(1, MOST_POINTS),
 }
 """Of the fields of `Params`, each by itself, but for `quantize` and `light_samples`."""
 
@@ -190,7 +198,7 @@ class Params:
     columns: int = 5
     """C >= 2."""
     content: str = "mask"
-    """`"mask"`: the silhouette alone, the paper's; "depth": window depth."""
+    """`"mask"`: the silhouette alone, the paper's; "depth": window depth, which "pcss" always has."""
     map_samples: int = 1
     """k, 1 to 15: a mask's texel is the coverage of k x k samples. Depth maps have one."""
     quantize: int | None = None
@@ -198,7 +206,7 @@ class Params:
     pcf: bool = False
     """Four comparisons of depths, mixed bilinearly."""
     bias: float = 1e-3
-    """Of depths, in units of window depth, >= 0."""
+    """Of depths, in units of window depth, >= 0; of "pcss" of distances from the light's plane, in world units."""
     policy: str = "dissolve"
     """`"dissolve"`: both neighbours are warped and mixed; "nearest": the nearer one is warped."""
     interpolation: str = "linear"
@@ -209,7 +217,8 @@ class Params:
     accumulation: str = "float"
     """`"float"`, or "unorm8": the 8-bit frame buffer of the paper (section 3.2.3)."""
     method: str = "warp"
-    """`"warp"`; "direct": a map rendered for every sample; "grid": n x n maps made beforehand (section 2.3)."""
+    """`"warp"`; "direct": a map rendered for every sample; "grid": n x n maps made beforehand (section 2.3); "pcss":
+    percentage-closer soft shadows, one map for the whole light (`shadows.percentage_closer`)."""
     grid_size: int = 32
     """n >= 2, maps along either axis; for "grid" alone, as what follows."""
     grid_mix: bool = True
@@ -218,15 +227,24 @@ class Params:
     """`"raw"`, or "haar": blocks of wavelet coefficients."""
     grid_threshold: float = 0.02
     """Wavelet coefficients below it in magnitude are dropped; in [0, 1]."""
+    search_points: int = 32
+    """1 to 4096: where a blocker is searched; for "pcss" alone, as what follows."""
+    filter_points: int = 64
+    """1 to 4096: where distances are compared, four texels each."""
 
     def __post_init__(self) -> None:
         limits.check(self, LIMITS)
         if self.quantize is not None:
             object.__setattr__(self, "quantize", _bits(self.quantize))
         object.__setattr__(self, "light_samples", _samples(self.light_samples))
+        if self.method == "pcss":
+            object.__setattr__(self, "content", "depth")
         self._check_sizes()
 
     def _check_sizes(self) -> None:
+        if self.method == "pcss" and (not isinstance(self.light_samples, int) or self.light_samples != 1):
+            found = self.light_samples if isinstance(self.light_samples, int) else "positions"
+            raise checks.reject("light_samples", found, '1 with method="pcss", which takes the whole light')
         if self.map_size * self.map_samples > FINEST_MAP:
             raise checks.reject("map_size * map_samples", self.map_size * self.map_samples, f"<= {FINEST_MAP}")
         if self.method == "grid" and self.grid_bytes > MOST_GRID_BYTES:

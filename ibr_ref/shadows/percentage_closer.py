@@ -9,7 +9,7 @@ For a point at place x and distance r from the light's plane, with the map paral
 3. *Filter*: the mean of percentage-closer comparisons over that region, each the bilinear mix of four (Reeves 1987).
 
 Both regions are sampled at the points of a lattice (`lattice`), the same for every pixel: no noise. A blocker is nearer
-than r - bias.
+than r - bias. Places and points are kept as texture coordinates, v downwards.
 """
 
 from __future__ import annotations
@@ -23,42 +23,57 @@ from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.sampling import footprint, lerp, nearest_index
+from ibr_ref.shadows import maps, parallel
+from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.lattice import on_parallelogram
 from ibr_ref.shadows.parallel import Frame, Window
+from ibr_ref.shadows.project import edge_distance
+from ibr_ref.shadows.vertex import place
 
 
 class Filter(NamedTuple):
     """How the map is asked."""
 
     search: Floats
-    """(N, 2) points of the light, for the blocker search."""
+    """(N, 2) points of the light, for the blocker search: texture coordinates on the map at distance 1."""
     points: Floats
     """(M, 2) points of the light, for the filter."""
     bias: float
     """Of distances, world units."""
+    caster: int
+    """The first of the caster's triangles: they and those after it are lit."""
 
 
 class Softened(NamedTuple):
-    """What is found of each pixel."""
+    """The arrays of the stage."""
 
-    blocker: Floats
-    """(H, W) b; infinite where no blocker is."""
+    coord: Floats
+    """(H, W, 3) s, t, and r, the distance from the light's plane; 0 where no surface is."""
     shadow: Floats
+    """(H, W) 0 lit to 1."""
+    blocker: Floats
+    """(H, W) b; 0 where no blocker is."""
+    penumbra: Floats
+    """(H, W) 1/b - 1/r; 0 where no blocker is."""
+    margin: Floats
+    """(H, W)."""
+    texel_margin: Floats
     """(H, W)."""
 
 
-def filter_of(frame: Frame, search: int, points: int, bias: float) -> Filter:
-    """The filter for a light, with so many points."""
-    centre = np.zeros(2)
-    return Filter(
-        on_parallelogram(centre, frame.half_edges, search), on_parallelogram(centre, frame.half_edges, points), bias
-    )
+def on_map(frame: Frame, window: Window, count: int) -> Floats:
+    """(N, 2) so many points of the light, as texture coordinates at distance 1."""
+    points = on_parallelogram(np.zeros(2), frame.half_edges, count)
+    shares: Floats = points / (window.high - window.low) * np.array([1.0, -1.0])
+    return shares
 
 
-@device
-def _to_map(x, y, low, high):
-    """Texture coordinates of a place, v downwards."""
-    return (x - low[0]) / (high[0] - low[0]), (high[1] - y) / (high[1] - low[1])
+def depth_map(scene: Scene, params: Params) -> Floats:
+    """(S, S) window depth of the caster in the map that is parallel to the light; 1 where it is not."""
+    frame, window = parallel.map_of(scene)
+    caster = place(np.asarray(scene.caster.vertices), scene.axes, np.asarray(scene.offset))
+    view = parallel.view_of_caster(frame, window, caster, np.asarray(scene.caster.triangles))
+    return maps.depth(view, np.zeros(2), params.map_size)
 
 
 @device
@@ -67,17 +82,19 @@ def _is_on_map(u, v):
 
 
 @device
-def _mean_blocker(texels, size, low, high, search, x, y, scale, nearer_than):
-    """The mean distance of the blockers around a place; infinite without any."""
-    total, count = 0.0, 0
+def _mean_blocker(texels, size, search, u, v, scale, nearer_than):
+    """The mean distance of the blockers around a place, 0 without any; and the margins of what was asked."""
+    total, count, margin, edge = 0.0, 0, np.inf, np.inf
     for i in range(len(search)):
-        u, v = _to_map(x + search[i, 0] * scale, y + search[i, 1] * scale, low, high)
-        if _is_on_map(u, v):
-            distance = texels[nearest_index(u, v, size, size, None)]
+        s, t = u + search[i, 0] * scale, v + search[i, 1] * scale
+        if _is_on_map(s, t):
+            distance = texels[nearest_index(s, t, size, size, None)]
+            margin = min(margin, abs(distance - nearer_than))
+            edge = min(edge, min(edge_distance(s * size), edge_distance(t * size)))
             if distance < nearer_than:
                 total += distance
                 count += 1
-    return total / count if count > 0 else np.inf
+    return (total / count if count > 0 else 0.0), margin, edge
 
 
 @device
@@ -86,86 +103,78 @@ def _nearer(texel, nearer_than):
 
 
 @device
-def _filtered(texels, size, low, high, points, x, y, scale, nearer_than):
-    """The mean of the comparisons around a place."""
-    total = 0.0
+def _filtered(texels, size, points, u, v, scale, nearer_than):
+    """The mean of the comparisons around a place, and their smallest margin."""
+    total, margin = 0.0, np.inf
     for i in range(len(points)):
-        u, v = _to_map(x + points[i, 0] * scale, y + points[i, 1] * scale, low, high)
-        if _is_on_map(u, v):
-            i00, i10, i01, i11, fx, fy = footprint(u, v, size, size, None)
-            top = lerp(_nearer(texels[i00], nearer_than), _nearer(texels[i10], nearer_than), fx)
-            bottom = lerp(_nearer(texels[i01], nearer_than), _nearer(texels[i11], nearer_than), fx)
+        s, t = u + points[i, 0] * scale, v + points[i, 1] * scale
+        if _is_on_map(s, t):
+            i00, i10, i01, i11, fx, fy = footprint(s, t, size, size, None)
+            t00, t10, t01, t11 = texels[i00], texels[i10], texels[i01], texels[i11]
+            top = lerp(_nearer(t00, nearer_than), _nearer(t10, nearer_than), fx)
+            bottom = lerp(_nearer(t01, nearer_than), _nearer(t11, nearer_than), fx)
             total += lerp(top, bottom, fy)
-    return total / len(points)
+            upper = min(abs(t00 - nearer_than), abs(t10 - nearer_than))
+            margin = min(margin, min(upper, min(abs(t01 - nearer_than), abs(t11 - nearer_than))))
+    return total / len(points), margin
 
 
 @device
-def _soften_row(triangle, world, view, caster, low, high, nearest, texels, size, wanted, blocker, shadow):
-    for i in range(len(shadow)):
-        blocker[i], shadow[i] = np.inf, 0.0
-        if triangle[i] < 0 or triangle[i] >= caster:
+def _nothing(result, row, i):
+    for k in range(3):
+        result.coord[row, i, k] = 0.0
+    result.shadow[row, i], result.blocker[row, i], result.penumbra[row, i] = 0.0, 0.0, 0.0
+    result.margin[row, i], result.texel_margin[row, i] = np.inf, np.inf
+
+
+@device
+def _soften_row(triangle, world, view, window, texels, size, wanted, row, result):
+    low, high = window.low, window.high
+    for i in range(len(triangle)):
+        _nothing(result, row, i)
+        if triangle[i] < 0:
             continue
         x, y, z = world[i, 0], world[i, 1], world[i, 2]
         r = -(view[2, 0] * x + view[2, 1] * y + view[2, 2] * z + view[2, 3])
-        if r <= nearest:
-            continue
-        s = (view[0, 0] * x + view[0, 1] * y + view[0, 2] * z + view[0, 3]) / r
-        t = (view[1, 0] * x + view[1, 1] * y + view[1, 2] * z + view[1, 3]) / r
-        if s < low[0] or s > high[0] or t < low[1] or t > high[1]:  # the map is wider than any penumbra
-            continue
-        before, scale = r - wanted.bias, 1.0 / nearest - 1.0 / r
-        blocker[i] = _mean_blocker(texels, size, low, high, wanted.search, s, t, scale, before)
-        if blocker[i] < np.inf:
-            scale = 1.0 / blocker[i] - 1.0 / r
-            shadow[i] = _filtered(texels, size, low, high, wanted.points, s, t, scale, before)
+        across = (view[0, 0] * x + view[0, 1] * y + view[0, 2] * z + view[0, 3]) / r
+        up = (view[1, 0] * x + view[1, 1] * y + view[1, 2] * z + view[1, 3]) / r
+        s, t = (across - low[0]) / (high[0] - low[0]), (high[1] - up) / (high[1] - low[1])
+        result.coord[row, i, 0], result.coord[row, i, 1], result.coord[row, i, 2] = s, t, r
+        if triangle[i] >= wanted.caster or r <= window.near or not _is_on_map(s, t):
+            continue  # the map is wider than any penumbra
+        before, scale = r - wanted.bias, 1.0 / window.near - 1.0 / r
+        b, margin, edge = _mean_blocker(texels, size, wanted.search, s, t, scale, before)
+        if b > 0.0:
+            scale = 1.0 / b - 1.0 / r
+            shadow, other = _filtered(texels, size, wanted.points, s, t, scale, before)
+            result.blocker[row, i], result.penumbra[row, i], result.shadow[row, i] = b, scale, shadow
+            margin = min(margin, other)
+        result.margin[row, i], result.texel_margin[row, i] = margin, edge
 
 
 @kernel
-def _soften(triangle, varyings, view, caster, low, high, nearest, texels, size, wanted, result):
+def _soften(triangle, varyings, view, window, texels, size, wanted, result):
     for row in prange(len(triangle)):
-        _soften_row(
-            triangle[row],
-            varyings[row],
-            view,
-            caster,
-            low,
-            high,
-            nearest,
-            texels,
-            size,
-            wanted,
-            result.blocker[row],
-            result.shadow[row],
-        )
+        _soften_row(triangle[row], varyings[row], view, window, texels, size, wanted, row, result)
 
 
 def soften(
     triangle: NDArray[np.int32],
     varyings: Floats,
     caster: int,
-    frame: Frame,
-    window: Window,
-    distances: Floats,
-    wanted: Filter,
+    scene: Scene,
+    params: Params,
+    depths: Floats,
 ) -> Softened:
-    """The shadow of what the camera sees, from a map of the caster's distances (S, S), infinite where it is not.
+    """The shadow of what the camera sees, from a map (S, S) of window depths.
 
     triangle (H, W), varyings (H, W, 3 or more): those of the `Surface`; triangles from index `caster` on are lit.
     """
     height, width = triangle.shape
-    result = Softened(*memory.arrays([(np.float64, (height, width))] * 2))
-    size, view = float(len(distances)), frame.view_from_world
-    _soften(
-        triangle,
-        varyings,
-        view,
-        caster,
-        window.low,
-        window.high,
-        window.near,
-        distances.reshape(-1),
-        size,
-        wanted,
-        result,
-    )
+    frame, window = parallel.map_of(scene)
+    search, points = (on_map(frame, window, count) for count in (params.search_points, params.filter_points))
+    wanted = Filter(search, points, float(params.bias), caster)
+    result = Softened(*memory.arrays([(np.float64, (height, width, 3)), *[(np.float64, (height, width))] * 5]))
+    distances = parallel.to_distance(depths, window).reshape(-1)
+    _soften(triangle, varyings, frame.view_from_world, window, distances, float(len(depths)), wanted, result)
     return result

@@ -151,7 +151,8 @@ def _hide_row(triangle, coord, lookup, hidden):
 
 
 @device
-def _edge_distance(x):
+def edge_distance(x):
+    """From x to the nearest whole number."""
     f = x - np.floor(x)
     return min(f, 1.0 - f)
 
@@ -163,7 +164,7 @@ def _keep_row(triangle, coord, size, margins, row, result):
         seen = triangle[i] >= 0
         for k in range(3):
             result.coord[row, i, k] = coord[k, i] if seen else 0.0
-        nearest = min(_edge_distance(coord[0, i] * size), _edge_distance(coord[1, i] * size))
+        nearest = min(edge_distance(coord[0, i] * size), edge_distance(coord[1, i] * size))
         result.margin[row, i] = margins[i]
         result.texel_margin[row, i] = nearest if seen and coord[3, i] > 0.0 else np.inf
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from ibr_ref.shadows.ensemble import Ensemble
 from ibr_ref.shadows.grid import MapGrid
 from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.maps import values
+from ibr_ref.shadows.percentage_closer import Softened, depth_map, soften
 from ibr_ref.shadows.prepared import Maps, check_unfolded, depths_of, prepare, source_of, texels_at, view_of
 from ibr_ref.shadows.project import DEPTH, DEPTH_PCF, MASK, Lookup, Projected, project
 from ibr_ref.shadows.resolve import accumulate, one_light, resolve
@@ -23,6 +24,9 @@ from ibr_ref.shadows.samples import Sample, samples_of, seen_offset
 from ibr_ref.shadows.surface import Object, Surface, see
 from ibr_ref.shadows.vertex import place
 from ibr_ref.shadows.warp import Warped, grids_at, locate, shares_at, warp_stage
+
+Projects = Callable[[Sample, Floats, Surface], Projected | Softened]
+"""A sample's map (S, S) onto what is seen."""
 
 
 def render(
@@ -45,11 +49,11 @@ def render(
     samples = samples_of(scene, params)
     images, kept = images_of(scene, params, samples, maps, stages)
     surface = surface_of(scene, rows)
-    lookup = lookup_of(scene, params, stages)
+    projects = _softener(scene, params) if params.method == "pcss" else _projector(scene, params, stages)
     shadow = np.zeros(surface.depth.shape)
-    projections = []
+    projections: list[Projected | Softened] = []
     for sample, image in zip(samples, images, strict=True):
-        projected = projected_from(scene.light, sample, image, surface, lookup)
+        projected = projects(sample, image, surface)
         accumulate(shadow, projected.shadow, len(samples), params.accumulation == "unorm8")
         if stages:
             projections.append(projected)
@@ -57,7 +61,7 @@ def render(
     lights, background = one_light(scene.light.arrays[0]), np.asarray(scene.background)
     color = resolve(surface, shadow[np.newaxis], scene.camera.eye, lights, float(scene.ambient), background)
     if stages:
-        kept.update(grouped("project", Projected._fields, projections), **{"accumulate.shadow": shadow})
+        kept.update(grouped("project", projections[0]._fields, projections), **{"accumulate.shadow": shadow})
     return Frame(color=color, depth=surface.depth, stages=kept)
 
 
@@ -79,7 +83,9 @@ def images_of(
     if params.method == "grid":
         images = _from_grid(scene, params, samples, maps)
     elif maps is not None:
-        raise checks.reject("maps", type(maps).__name__, 'None with method="direct"')
+        raise checks.reject("maps", type(maps).__name__, f'None with method="{params.method}"')
+    elif params.method == "pcss":
+        images = [depth_map(scene, params)]
     else:
         images = [_direct(scene, params, sample) for sample in samples]
     return images, {"warp.image": per_sample(images)} if stages else {}
@@ -199,6 +205,16 @@ def lookup_of(scene: Scene | Ensemble, params: Params, keep: bool) -> Lookup:
     """How maps are read."""
     mode = MASK if params.content == "mask" else DEPTH_PCF if params.pcf else DEPTH
     return Lookup(mode, params.quantize is not None, float(params.bias), caster_from(scene), keep)
+
+
+def _projector(scene: Scene, params: Params, keep: bool) -> Projects:
+    lookup = lookup_of(scene, params, keep)
+    return lambda sample, image, surface: projected_from(scene.light, sample, image, surface, lookup)
+
+
+def _softener(scene: Scene, params: Params) -> Projects:
+    first = caster_from(scene)
+    return lambda _, image, surface: soften(surface.triangle, surface.varyings, first, scene, params, image)
 
 
 def projected_from(light: AreaLight, sample: Sample, image: Floats, surface: Surface, lookup: Lookup) -> Projected:

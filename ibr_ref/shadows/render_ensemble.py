@@ -13,7 +13,7 @@ from ibr_ref.scene import checks
 from ibr_ref.shadows.automatic import Progress
 from ibr_ref.shadows.ensemble import Ensemble
 from ibr_ref.shadows.grid import MapGrid
-from ibr_ref.shadows.inputs import Params
+from ibr_ref.shadows.inputs import MAPPED, Params
 from ibr_ref.shadows.prepared import Maps, prepare
 from ibr_ref.shadows.project import Lookup, Projected
 from ibr_ref.shadows.render import grouped, images_of, lookup_of, per_sample, projected_from, surface_of
@@ -76,6 +76,7 @@ def render_ensemble(
 
 
 def _check(ensemble: Ensemble, params: Params, maps: EnsembleMaps | None) -> None:
+    checks.choice("method", params.method, MAPPED)
     if len(ensemble.lights) > 1 and isinstance(params.light_samples, np.ndarray):
         found = f"{len(params.light_samples)} positions"
         raise checks.reject(

@@ -3,13 +3,11 @@
 `render_soft(Scene, SoftParams)` draws the same picture as `render`, with the caster's shadow by
 
 - `method="traced"`: rays from every visible point to points all over the light (`traced`), the truth;
-- `method="convolution"`: Soler & Sillion 1998 (`convolution`), which the paper names in section 1;
-- `method="pcss"`: percentage-closer soft shadows, Fernando 2005 (`percentage_closer`), of today.
+- `method="convolution"`: Soler & Sillion 1998 (`convolution`), which the paper names in section 1.
 
-All see what the masks of `render` see: the caster alone throws a shadow, and not upon itself. Stage arrays
-(`frame.stages`): "soft.shadow" (H, W) of all; of "convolution" "soft.planes" (P,), the distances of the receivers' planes
-from the light's, and "soft.maps" (P, S, S), the shadow on each; of "pcss" "soft.map" (S, S), the caster's distances from
-the light's plane, infinite where it is not, and "soft.blocker" (H, W), the mean of those found, infinite without any.
+Both see what the masks of `render` see: the caster alone throws a shadow, and not upon itself. Stage arrays
+(`frame.stages`): "soft.shadow" (H, W) of both; of "convolution" "soft.planes" (P,), the distances of the receivers' planes
+from the light's, and "soft.maps" (P, S, S), the shadow on each. `render` with `method="pcss"` is a way that people port.
 """
 
 from __future__ import annotations
@@ -22,8 +20,7 @@ import numpy as np
 from ibr_ref.array_types import Floats
 from ibr_ref.io import Frame
 from ibr_ref.scene import checks
-from ibr_ref.scene.vectors import cross, dot, unit
-from ibr_ref.shadows import convolution, maps, parallel, percentage_closer
+from ibr_ref.shadows import convolution, maps, parallel
 from ibr_ref.shadows.inputs import FINEST_MAP, LARGEST_MAP, Params, Scene
 from ibr_ref.shadows.lattice import on_parallelogram
 from ibr_ref.shadows.maps import MOST_SAMPLES
@@ -34,17 +31,13 @@ from ibr_ref.shadows.surface import Surface
 from ibr_ref.shadows.traced import traced
 from ibr_ref.shadows.vertex import place
 
-SOFT_METHODS = ("traced", "convolution", "pcss")
+SOFT_METHODS = ("traced", "convolution")
 READ_BY: dict[str, tuple[str, ...]] = {
     "rays": ("traced",),
-    "map_size": ("convolution", "pcss"),
-    **dict.fromkeys(("map_samples", "receiver_planes"), ("convolution",)),
-    **dict.fromkeys(("search_points", "filter_points", "bias"), ("pcss",)),
+    **dict.fromkeys(("map_size", "map_samples", "receiver_planes"), ("convolution",)),
 }
 """Fields of `SoftParams` that only some methods read, and these."""
 MOST_RAYS = 65536
-MOST_POINTS = 4096
-"""Of either of the percentage-closer filter's regions."""
 MOST_PLANES = 64
 
 
@@ -53,21 +46,15 @@ class SoftParams:
     """How the light's size is taken into account."""
 
     method: str = "traced"
-    """`"traced"`, "convolution" or "pcss"."""
+    """`"traced"` or "convolution"."""
     rays: int = 610
     """Of "traced", from every point, 1 to 65536: what it says of a straight edge is right to about 2/rays."""
     map_size: int = 512
-    """S >= 8, texels a side of the one map that "convolution" and "pcss" render; it holds the caster and its penumbra."""
+    """S >= 8, texels a side of the one map that "convolution" renders; it holds the caster and its penumbra."""
     map_samples: int = 1
     """k, 1 to 15, of "convolution": a texel is the coverage of k x k samples."""
     receiver_planes: int = 4
     """P, 1 to 64, of "convolution"."""
-    search_points: int = 32
-    """Of "pcss", 1 to 4096: where a blocker is searched."""
-    filter_points: int = 64
-    """Of "pcss", 1 to 4096: where depths are compared, four texels each."""
-    bias: float = 1e-3
-    """Of "pcss", world units >= 0: how much nearer to the light than a point what blocks it is at least."""
 
     def __post_init__(self) -> None:
         checks.choice("method", self.method, SOFT_METHODS)
@@ -76,12 +63,9 @@ class SoftParams:
             "map_size": (8, LARGEST_MAP),
             "map_samples": (1, MOST_SAMPLES),
             "receiver_planes": (1, MOST_PLANES),
-            "search_points": (1, MOST_POINTS),
-            "filter_points": (1, MOST_POINTS),
         }
         for name, (low, high) in wholes.items():
             object.__setattr__(self, name, checks.whole(name, getattr(self, name), low=low, high=high))
-        object.__setattr__(self, "bias", checks.number("bias", self.bias, low=0.0))
         if self.map_size * self.map_samples > FINEST_MAP:
             raise checks.reject("map_size * map_samples", self.map_size * self.map_samples, f"<= {FINEST_MAP}")
 
@@ -95,9 +79,7 @@ def render_soft(scene: Scene, params: SoftParams | None = None, *, stages: bool 
     samples_of(scene, Params())  # the light's centre is neither in the caster nor on a triangle
     surface = surface_of(scene)
     caster = place(np.asarray(scene.caster.vertices), scene.axes, np.asarray(scene.offset))
-    kept = {"traced": _traced, "convolution": _convolved, "pcss": _softened}[params.method](
-        scene, params, surface, caster
-    )
+    kept = {"traced": _traced, "convolution": _convolved}[params.method](scene, params, surface, caster)
     lights, background = one_light(scene.light.arrays[0]), np.asarray(scene.background)
     shadows = kept["soft.shadow"][np.newaxis]
     color = resolve(surface, shadows, scene.camera.eye, lights, float(scene.ambient), background)
@@ -123,39 +105,10 @@ def _convolved(scene: Scene, params: SoftParams, surface: Surface, caster: Float
     return {"soft.planes": planes, "soft.maps": images, "soft.shadow": shadow}
 
 
-def _softened(scene: Scene, params: SoftParams, surface: Surface, caster: Floats) -> dict[str, Any]:
-    first, triangles = caster_from(scene), np.asarray(scene.caster.triangles)
-    frame, window, _ = _parallel(scene, surface, caster)
-    view = parallel.view_of_caster(frame, window, caster, triangles)
-    distances = parallel.to_distance(maps.depth(view, np.zeros(2), params.map_size), window)
-    wanted = percentage_closer.filter_of(frame, params.search_points, params.filter_points, params.bias)
-    found = percentage_closer.soften(surface.triangle, surface.varyings, first, frame, window, distances, wanted)
-    return {"soft.map": distances, "soft.blocker": found.blocker, "soft.shadow": found.shadow}
-
-
-def frame_of(scene: Scene, towards: Floats) -> parallel.Frame:
-    """The frame of the light, whose plane is that of the axes; h > 0 on the side of the point `towards` (3,)."""
-    centre, half_edges = scene.light.arrays
-    right, normal = unit(scene.axes[0]), unit(cross(*scene.axes))
-    backwards = -normal if dot(normal, towards - centre) > 0.0 else normal
-    rows = np.stack([right, cross(backwards, right), backwards])
-    view = np.eye(4)
-    view[:3, :3], view[:3, 3] = rows, [-dot(row, centre) for row in rows]
-    return parallel.Frame(view, np.array([[dot(row, edge) for row in rows[:2]] for edge in half_edges]))
-
-
 def _parallel(scene: Scene, surface: Surface, caster: Floats) -> tuple[parallel.Frame, parallel.Window, Floats]:
     """The light's frame, a window around the caster, and the distances of all that is seen of the receivers."""
-    drawn = caster[np.unique(scene.caster.triangles)]
-    frame = frame_of(scene, drawn.mean(axis=0))
-    nearest = parallel.distances(frame, drawn).min()
-    if not nearest > 0.0:
-        raise checks.reject(
-            "light.position",
-            scene.light.arrays[0].tolist(),
-            "a light with the whole caster on one side of its plane, that of offset_axes",
-        )
+    frame, drawn, nearest = parallel.before_light(scene, caster)
     seen = (surface.triangle >= 0) & (surface.triangle < caster_from(scene))
     receivers = parallel.distances(frame, surface.varyings[seen][:, :3])
     farthest = float(receivers.max()) if len(receivers) else 0.0
-    return frame, parallel.window_around(frame, drawn, max(farthest, float(nearest))), receivers
+    return frame, parallel.window_around(frame, drawn, max(farthest, nearest)), receivers

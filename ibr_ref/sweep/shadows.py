@@ -69,8 +69,10 @@ def measured(scene: Scene, params: Swept, kept: dict[Any, Any]) -> dict[str, flo
     """A row's measures. kept: not used, as what is true depends on the parameters."""
     maps = _maps(scene, params)
     ours, theirs = render(scene, params, maps=maps), render(scene, replace(params, method="direct"))
+    pairs = [] if params.method == "pcss" else zip(_images(ours), _images(theirs), strict=True)
+    found = [iou(*pair) for pair in pairs]
     return {
-        "map": float(np.mean([iou(*pair) for pair in zip(_images(ours), _images(theirs), strict=True)])),
+        "map": float(np.mean(found)) if found else None,
         "shadow": iou(*(frame.stages["accumulate.shadow"] for frame in (ours, theirs))),
         "soft": soft_difference(*(frame.stages["accumulate.shadow"] for frame in (ours, theirs))),
         "bytes": float(maps.nbytes) if maps is not None else 0.0,
@@ -90,7 +92,7 @@ def _images(frame: Frame) -> Any:
 
 def _maps(scene: Scene, params: Swept) -> Maps | MapGrid | None:
     """Those that serve all places of the caster."""
-    if params.method == "direct":
+    if params.method in ("direct", "pcss"):
         return None
     made_with = ("map_size", "content", "map_samples", *_MADE_WITH[params.method])
     values = tuple(getattr(params, name) for name in made_with)

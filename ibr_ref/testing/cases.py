@@ -16,7 +16,7 @@ from ibr_ref import methods
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.splatting import case as splatting_case
 from ibr_ref.scene import Camera, Light, checks
-from ibr_ref.shadows import Params, prepare
+from ibr_ref.shadows import prepare
 from ibr_ref.testing import displacement, shadows, splatting
 
 PROFILE = "ieee32"
@@ -35,7 +35,7 @@ def cases(method: str, system: str | None = None) -> SearchStrategy[Case]:
     """Of a method. Raises ValueError for one that has none.
 
     system: the one of those that its referee judges that draws them all: a search of displacement mapping ("relief"), a
-    shape of splats, how shadows are made. Without: the protruded search; any shape; warped and rendered shadows.
+    shape of splats, how shadows are made. Without: the protruded search; any shape; any shadows.
     """
     checks.choice("method", method, tuple(_CASES))
     if system is not None:
@@ -69,13 +69,9 @@ def splatting_cases(draw: DrawFn, shape: str | None = None) -> Case:
 
 @st.composite
 def shadow_cases(draw: DrawFn, method: str | None = None) -> Case:
-    """Shadows by warped maps and by rendered ones."""
+    """Shadows by warped maps, by rendered ones, and by those of a grid."""
     found = draw(shadows.drawn(PIXELS))
-    usual = Params()
-    params = replace(  # no case has a grid
-        found.params, grid_size=usual.grid_size, grid_mix=usual.grid_mix, grid_storage=usual.grid_storage
-    )
-    params = replace(params, method=method or ("direct" if params.method == "direct" else "warp"))
+    params = found.params if method is None else replace(found.params, method=method)
     _assume_room(found.scene.camera)
     maps = {"maps": prepare(found.scene, params, controls=found.controls)} if params.method == "warp" else {}
     return Case(name="shadows-drawn", about=ABOUT, profile=PROFILE, scene=found.scene, params=params, inputs=maps)

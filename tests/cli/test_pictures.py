@@ -136,6 +136,8 @@ def test_what_does_not_go_together(
     monkeypatch.chdir(tmp_path)
     assert_one_line(run(*SHADOWS, cube, "--size", "40x30", *more), *words)
     assert_one_line(
-        run("render", "shadows", "--method", "pcss", "--size", "40x30", "--out", "o.tif"), "--method pcss", "TIFF"
+        run("render", "shadows", "--method", "convolution", "--size", "40x30", "--out", "o.tif"),
+        "--method convolution",
+        "TIFF",
     )
     assert not [file for file in tmp_path.iterdir() if file.suffix in (".tif", ".png", ".film")]

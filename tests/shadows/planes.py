@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.scene import Camera, Mesh
-from ibr_ref.shadows import AreaLight, Scene, SoftParams, render_soft
+from ibr_ref.shadows import AreaLight, Params, Scene, SoftParams, render, render_soft
 from tests.shadows.scenes import Array, plate
 
 CORNERS = [(-0.35, -0.2, 0.0), (0.3, -0.3, 0.0), (0.1, 0.35, 0.0), (-0.1, 0.05, 0.0)]
@@ -62,4 +62,6 @@ def tilted_scene(caster: Mesh, half_edges: Any = ((0.4, 0.1, 0.0), (-0.2, 0.3, 0
 
 def soft_shadow_by(scene: Scene, **changes: Any) -> Array:
     """(H, W)."""
+    if changes.get("method") == "pcss":
+        return np.asarray(render(scene, Params(**changes)).stages["accumulate.shadow"], np.float64)
     return np.asarray(render_soft(scene, SoftParams(**changes)).stages["soft.shadow"], np.float64)

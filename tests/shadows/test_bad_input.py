@@ -34,6 +34,7 @@ PARAMS = [
     *((field, *row) for field in ("rows", "columns") for row in [*NOT_WHOLE, (1, "1"), (257, "257")]),
     *(("map_samples", *row) for row in [*NOT_WHOLE, (0, "0"), (16, "16")]),
     *(("grid_size", *row) for row in [*NOT_WHOLE, (1, "1")]),
+    *((field, *row) for field in ("search_points", "filter_points") for row in [*NOT_WHOLE, (0, "0"), (4097, "4097")]),
     *(
         (field, *row)
         for field in ("content", "policy", "accumulation", "method", "grid_storage")
@@ -67,8 +68,6 @@ SOFT = [
     *(("map_size", *row) for row in [*NOT_WHOLE, (7, "7"), (4097, "4097")]),
     *(("map_samples", *row) for row in [*NOT_WHOLE, (0, "0"), (16, "16")]),
     *(("receiver_planes", *row) for row in [*NOT_WHOLE, (0, "0"), (65, "65")]),
-    *((field, *row) for field in ("search_points", "filter_points") for row in [*NOT_WHOLE, (0, "0"), (4097, "4097")]),
-    *(("bias", *row) for row in [*NOT_NUMBERS, (-1e-3, "-0.001")]),
 ]  # fmt: skip
 
 
@@ -81,10 +80,10 @@ def test_soft_maps_that_are_only_together_too_large() -> None:
     rejected("map_size * map_samples", "40960", SoftParams, map_size=4096, map_samples=10)
 
 
-@pytest.mark.parametrize("method", ["convolution", "pcss"])
-def test_a_light_beside_the_caster_throws_no_single_map(method: str) -> None:
+def test_a_light_beside_the_caster_throws_no_single_map() -> None:
     beside = scene(light=light(position=(0.0, 1.5, 0.1), target=(0.0, 0.0, 0.0), up=(0, 0, 1)))
-    rejected("light.position", "0.1", render_soft, beside, SoftParams(method=method))
+    rejected("light.position", "0.1", render_soft, beside, SoftParams(method="convolution"))
+    rejected("light.position", "0.1", render, beside, Params(method="pcss"))
 
 
 def test_a_light_inside_the_caster_casts_no_rays() -> None:

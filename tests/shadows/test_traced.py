@@ -150,7 +150,7 @@ def test_the_caster_and_what_lies_between_it_and_the_light_are_lit() -> None:
     seen = scene(receivers=[plate(6.0, -1.0), plate(0.2, 2.0)], camera=Camera.look_at(
         eye=(0.5, -4.0, 5.0), target=(0.0, 0.0, 0.0), near=0.1, far=20, width=64, height=48))  # fmt: skip
     direct = render(seen, Params(method="direct", map_size=64))
-    for method in ("traced", "convolution", "pcss"):
+    for method in ("traced", "convolution"):
         frame = render_soft(seen, SoftParams(method=method))
         assert np.array_equal(frame.depth, direct.depth)
         shadow = np.asarray(frame.stages["soft.shadow"])
@@ -163,7 +163,7 @@ def test_the_caster_and_what_lies_between_it_and_the_light_are_lit() -> None:
 
 def test_without_stages_the_same_picture() -> None:
     seen = tilted_scene(dart())
-    for method in ("traced", "convolution", "pcss"):
+    for method in ("traced", "convolution"):
         whole, bare = (render_soft(seen, SoftParams(method=method), stages=keep) for keep in (True, False))
         assert np.array_equal(whole.color, bare.color)
         assert bare.stages == {}

@@ -290,6 +290,13 @@ def beyond() -> Case:
     return _case("beyond", "adversarial", about, scene, _params(method="direct", content="depth", bias=0.0))
 
 
+def many() -> Case:
+    """Many maps."""
+    about = "The mix of the four around of 5 x 5 maps made beforehand, five light samples, masks: nothing is warped."
+    params = _params(method="grid", grid_size=5, light_samples=5, map_samples=2)
+    return _case("many", "typical", about, _scene(), params, profile="gl")
+
+
 def stage() -> Case:
     """Of real size."""
     about = "A chair on a stage, 640 x 480, five light samples, maps of 128 x 128, grids of 15 x 5 as in the paper."
@@ -300,7 +307,7 @@ def stage() -> Case:
 
 _MAKERS = (
     box, soft, nearest, depths, direct, masks, bent, oblique, beside, border, behind, far, filtered, coarse, pace, thin,
-    listed, verge, beyond, stage,
+    listed, verge, beyond, many, stage,
 )  # fmt: skip
 
 CASES: dict[str, Callable[[], Case]] = {f"shadows-{make.__name__}": cache(make) for make in _MAKERS}

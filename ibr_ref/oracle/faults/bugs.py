@@ -13,8 +13,9 @@ Kind = TypeVar("Kind", bound=type[Any])
 class Bugs:
     """The mutants of one stage, in the order in which they are written down."""
 
-    def __init__(self, stage: str) -> None:
-        self.stage = stage
+    def __init__(self, stage: str, only: tuple[str, ...] = ()) -> None:
+        """only: of the systems of which all of them are bugs; empty: all."""
+        self.stage, self.only = stage, only
         self.mutants: list[Mutant] = []
 
     def add(
@@ -25,7 +26,7 @@ class Bugs:
         def enter(kind: Kind) -> Kind:
             fault = " ".join((kind.__doc__ or "").split())
             port = self.port(kind)
-            self.mutants.append(Mutant(name, fault, self.stage, port, small, survives, hidden, only))
+            self.mutants.append(Mutant(name, fault, self.stage, port, small, survives, hidden, only or self.only))
             return kind
 
         return enter

@@ -42,7 +42,11 @@ class ShadowsParams(Model):
     light_samples: Literal[1, 5, 9] | tuple[Vector3, ...]
     """1, 5 or 9, or world positions; `scene.light_samples` lists them all."""
     accumulation: Literal["float", "unorm8"]
-    method: Literal["warp", "direct"]
+    method: Literal["warp", "direct", "grid"]
+    grid_size: int = 32
+    """n: method = "grid" has n x n maps, from end to end of the widened range."""
+    grid_mix: bool = True
+    """The mix of the four maps around; otherwise the nearest one."""
 
 
 class MeshFile(Model):

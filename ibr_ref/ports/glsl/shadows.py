@@ -1,12 +1,12 @@
 """Shadows by image warping on OpenGL: the same inputs as `ibr_ref.shadows.render`, in float32 GLSL.
 
 Scene, parameters and prepared maps are those of an exported case, as case_folder.py reads it; nothing of `ibr_ref` is
-imported. Ported are method="warp" and "direct", masks and depths, both policies, every way to compare, and both ways to
-accumulate; not the grid of many maps. The passes of a frame:
+imported. Ported are method="warp", "direct" and "grid", masks and depths, both policies, every way to compare, and both
+ways to accumulate. The passes of a frame:
 
 1. receivers and caster into two attachments: world position and kind; colour and max(0, n . l);
-2. per light sample the map, warped or rendered (shadow_maps.py), and one screen-filling triangle that projects it onto the
-   positions and is blended with (GL_SRC_ALPHA, GL_ONE), alpha = 1/N;
+2. per light sample the map, warped, rendered (shadow_maps.py) or of a grid (shadow_grid.py), and one screen-filling triangle
+   that projects it onto the positions and is blended with (GL_SRC_ALPHA, GL_ONE), alpha = 1/N;
 3. one screen-filling triangle that mixes colour, light and shadow.
 
 With stages everything is float32, and bilinear mixes are made in the shader. Without, the sampler
@@ -23,6 +23,7 @@ import moderngl
 import numpy as np
 
 from ibr_ref.ports.glsl import gl
+from ibr_ref.ports.glsl.shadow_grid import GridMaps
 from ibr_ref.ports.glsl.shadow_maps import (
     CasterMaps,
     Pass,
@@ -44,7 +45,7 @@ class Prepared:
     device: gl.Device
     scene: Any
     params: Any
-    source: WarpedMaps | CasterMaps
+    source: WarpedMaps | CasterMaps | GridMaps
     target: gl.Target
     surface: moderngl.VertexArray
     project: moderngl.VertexArray
@@ -92,7 +93,7 @@ class Prepared:
 
     def read_map(self) -> np.ndarray:
         """(S, S) the last sample's map, as it was drawn last."""
-        return self.source.read() if isinstance(self.source, CasterMaps) else self.source.result.read()
+        return self.source.result.read() if isinstance(self.source, WarpedMaps) else self.source.read()
 
     def release(self) -> None:
         """Give everything back to the driver."""
@@ -114,6 +115,8 @@ class Prepared:
     def _draw_map(self, sample: Any) -> None:
         if isinstance(self.source, CasterMaps):
             self.source.draw(sample.camera, self.scene.offset)
+        elif isinstance(self.source, GridMaps):
+            self.source.draw(sample)
         else:
             cell, fraction = place_in_cell(self.scene.maps.positions, sample.seen_offset)
             self.source.draw(cell, shares_in_cell(self.scene.maps.depths, cell, fraction))
@@ -224,13 +227,7 @@ class Port:
         coordinates = ctx.vertex_array(self._programs.get("screen", "project", "COORD", *flags), []) if stages else None
         resolve = ctx.vertex_array(self._programs.get("screen", "resolve"), [])
         vaos = [vao for vao in (surface, project, coordinates, resolve) if vao is not None]
-        source: WarpedMaps | CasterMaps = (
-            CasterMaps(self.device, self._programs, scene, params)
-            if params.method == "direct"
-            else create_warped_maps(
-                self.device, self._programs, scene.maps, params, exact=stages, texels="f4" if stages else texels
-            )
-        )
+        source = self._source(scene, params, stages, "f4" if stages else texels)
         return Prepared(
             device=self.device,
             scene=scene,
@@ -246,6 +243,13 @@ class Port:
             owned=[*vaos, buffer],
         )
 
+    def _source(self, scene: Any, params: Any, stages: bool, texels: str) -> WarpedMaps | CasterMaps | GridMaps:
+        """Where the map of a sample comes from."""
+        if params.method == "warp":
+            return create_warped_maps(self.device, self._programs, scene.maps, params, exact=stages, texels=texels)
+        maps = CasterMaps if params.method == "direct" else GridMaps
+        return maps(self.device, self._programs, scene, params)
+
 
 def _flags(params: Any, stages: bool) -> list[str]:
     """The #defines of the projection."""
@@ -260,5 +264,5 @@ def _flags(params: Any, stages: bool) -> list[str]:
 
 def _check(params: Any) -> None:
     """Refuse what is not ported."""
-    if params.method not in ("warp", "direct"):
-        raise ValueError(f"method = {params.method!r}: the port allows warp, direct")
+    if params.method not in ("warp", "direct", "grid"):
+        raise ValueError(f"method = {params.method!r}: the port allows warp, direct, grid")

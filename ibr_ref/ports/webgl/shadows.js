@@ -4,7 +4,8 @@ import {channels} from "./gl.js";
 
 /** All arrays of a frame, {data, shape} by name. Throws for what is not ported. */
 export async function draw(device, {scene, params}) {
-    if (!["warp", "direct"].includes(params.method)) throw new Error(`method = '${params.method}': the port allows warp, direct`);
+    if (!["warp", "direct", "grid"].includes(params.method))
+        throw new Error(`method = '${params.method}': the port allows warp, direct, grid`);
     if (params.accumulation === "float" && !device.gl.getExtension("EXT_float_blend"))
         throw new Error("WebGL 2 without EXT_float_blend");
     return new Drawing(device, scene, params).frame();
@@ -39,7 +40,7 @@ class Drawing {
         const accumulated = device.target(width, height, {sum: params.accumulation === "float" ? "R32F" : "R8"}, false);
         accumulated.begin();
         for (const sample of scene.light_samples) {
-            const map = params.method === "warp" ? await this.#warped(sample) : await this.#rendered(sample);
+            const map = await this.#map(sample);
             this.#keep("warp.image", {data: channels(map.read("texel"), [0]), shape: [this.size, this.size]});
             const textures = {places: seen.get("place"), map: map.get("texel")};
             const alpha = 1 / scene.light_samples.length;
@@ -84,8 +85,22 @@ class Drawing {
         return target;
     }
 
-    /** The map of a sample: masks of k x k samples a texel are rendered as large and counted. */
-    async #rendered(sample) {
+    /** The map of a sample: warped, rendered, or between four of a grid. */
+    async #map(sample) {
+        const {device, scene, params} = this;
+        if (params.method === "warp") return this.#warped(sample);
+        if (params.method === "direct") return this.#rendered(sample.camera, scene.offset);
+        const {offsets, fraction} = placeInGrid(scene, params.grid_size, sample.seen_offset);
+        const maps = {};
+        for (const [i, name] of ["m00", "m10", "m01", "m11"].entries())
+            maps[name] = (await this.#rendered(scene.light.camera, offsets[i])).get("texel");
+        const result = device.target(this.size, this.size, {texel: "R32F"}, false);
+        await this.#screen(result, "mix", [], maps, {fraction}, {mixed: params.grid_mix ? 1 : 0});
+        return result;
+    }
+
+    /** The map of the caster at an offset: masks of k x k samples a texel are rendered as large and counted. */
+    async #rendered(camera, offset) {
         const {device, gl, scene, params} = this;
         const k = this.depths ? 1 : params.map_samples;
         const target = device.target(k * this.size, k * this.size, {texel: "R32F"});
@@ -93,7 +108,7 @@ class Drawing {
         const defines = this.depths ? "#define DEPTH\n" : "";
         const program = await device.program(defines, "shadows_map.vert", "shadows_map.frag");
         gl.useProgram(program);
-        this.#camera(program, sample.camera, scene.offset);
+        this.#camera(program, camera, offset);
         device.buffer(Float32Array.from(scene.caster.vertices.data));
         device.attributes(12, [[0, 3, 0]]);
         const indices = Uint32Array.from(scene.caster.triangles.data);
@@ -268,6 +283,20 @@ function placeInCell(positions, offset) {
     const cell = lines.map((line, k) => offset[k] >= line[1] ? 1 : 0);
     const fraction = lines.map((line, k) => (offset[k] - line[cell[k]]) / (line[cell[k] + 1] - line[cell[k]]));
     return {cell, fraction};
+}
+
+/** Of n x n maps the four around an offset: the object's offsets in them (00, 10, 01, 11), and the fractions s and t. */
+function placeInGrid(scene, n, offset) {
+    const lines = [0, 1].map(k => {
+        const widening = Math.max(...scene.light_samples.map(sample => Math.abs(sample.displacement[k])));
+        const [low, high] = [scene.offset_range[k][0] - widening, scene.offset_range[k][1] + widening];
+        const place = (offset[k] - low) / (high - low) * (n - 1);
+        const cell = Math.min(Math.max(Math.floor(place), 0), n - 2);
+        const at = i => low * (1 - i / (n - 1)) + high * i / (n - 1);
+        return {ends: [at(cell), at(cell + 1)], fraction: place - cell};
+    });
+    const offsets = [[0, 0], [1, 0], [0, 1], [1, 1]].map(([i, j]) => [lines[0].ends[i], lines[1].ends[j]]);
+    return {offsets, fraction: lines.map(line => line.fraction)};
 }
 
 /** The shares of the next map in the upper row and in the lower one, and of the lower row; depths (3, 3) or null: s, s, t. */

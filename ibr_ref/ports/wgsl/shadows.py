@@ -1,9 +1,10 @@
 """Shadows by image warping in WGSL: the same inputs as `ibr_ref.shadows.render`, in float32.
 
 Scene, parameters and prepared maps are those of an exported case, as case_folder.py reads it; nothing else of `ibr_ref` is
-imported. Ported are method="warp" and "direct", masks and depths, both policies, every way to compare, and both ways to
-accumulate. The passes of a frame: receivers and caster into place and surface; per light sample its map, warped by three
-draw calls or rendered, and its projection; the sum, added in a shader for floats, blended for bytes; the colour.
+imported. Ported are method="warp", "direct" and "grid", masks and depths, both policies, every way to compare, and both ways
+to accumulate. The passes of a frame: receivers and caster into place and surface; per light sample its map, warped by three
+draw calls, rendered, or mixed from four, and its projection; the sum, added in a shader for floats, blended for bytes; the
+colour.
 """
 
 from __future__ import annotations
@@ -16,7 +17,14 @@ import numpy as np
 import wgpu
 
 from ibr_ref.ports.frame import Frame
-from ibr_ref.ports.shadow_scene import mesh_indices, offset_in_world, place_in_cell, shares_in_cell, vertices
+from ibr_ref.ports.shadow_scene import (
+    mesh_indices,
+    offset_in_world,
+    place_in_cell,
+    place_in_grid,
+    shares_in_cell,
+    vertices,
+)
 from ibr_ref.ports.wgsl import gpu
 
 FLOAT, FLOATS = "r32uint", "rgba32uint"
@@ -38,8 +46,8 @@ class Port:
 
     def render(self, scene: Any, params: Any) -> Frame:
         """One frame with all stages, read back. Raises ValueError for what is not ported."""
-        if params.method not in ("warp", "direct"):
-            raise ValueError(f"method = {params.method!r}: the port allows warp, direct")
+        if params.method not in ("warp", "direct", "grid"):
+            raise ValueError(f"method = {params.method!r}: the port allows warp, direct, grid")
         return _Drawing(self.device, scene, params).frame()
 
 
@@ -72,7 +80,7 @@ class _Drawing:
         first: Sequence[float] | None = (0.0,) * 4
         samples = self.scene.light_samples
         for sample in samples:
-            drawn = self._warped(sample) if self.params.method == "warp" else self._rendered(sample)
+            drawn = self._map(sample)
             camera = {"camera": sample.camera, "alpha": 1.0 / len(samples)}
             projected = self._target(FLOATS)
             self._screen("projected", {1: place, 2: drawn}, projected, camera)
@@ -111,13 +119,32 @@ class _Drawing:
         self._draw(("seen", "surface"), SEEN, rows, None, colors, depth, {0: block})
         return place, surface, depth
 
-    def _rendered(self, sample: Any) -> Any:
-        """The map of a sample: masks of k x k samples a texel are rendered as large and counted."""
+    def _map(self, sample: Any) -> Any:
+        """The map of a sample: warped, rendered, or between four of a grid."""
+        if self.params.method == "warp":
+            return self._warped(sample)
+        if self.params.method == "direct":
+            return self._rendered(sample.camera, self.scene.offset)
+        offsets, fraction = place_in_grid(self.scene, int(self.params.grid_size), sample.seen_offset)
+        if not self.params.grid_mix:
+            fraction = tuple(float(f >= 0.5) for f in fraction)
+        m00, m10, m01, m11 = (self._rendered(self.scene.light.camera, offset) for offset in offsets)
+        top, bottom = self._between(m00, m10, fraction[0]), self._between(m01, m11, fraction[0])
+        return self._between(top, bottom, fraction[1])
+
+    def _between(self, first: Any, second: Any, share: float) -> Any:
+        """Two maps mixed."""
+        mixed = gpu.target(self.device, int(self.params.map_size), int(self.params.map_size), FLOAT)
+        self._screen("mixed", {1: first, 2: second}, mixed, {"shares": (0.0, 0.0, 0.0, share)})
+        return mixed
+
+    def _rendered(self, camera: Any, offset: Any) -> Any:
+        """The map of the caster at an offset: masks of k x k samples a texel are rendered as large and counted."""
         k = 1 if self.depths else int(self.params.map_samples)
         size = k * int(self.params.map_size)
         drawn = gpu.target(self.device, size, size, FLOAT)
         depth = gpu.target(self.device, size, size, "depth32float") if self.depths else None
-        caster, block = self.scene.caster, self._block(camera=sample.camera, offset=self.scene.offset)
+        caster, block = self.scene.caster, self._block(camera=camera, offset=offset)
         corners, indices = np.asarray(caster.vertices, np.float32), np.asarray(caster.triangles, np.uint32)
         self._draw(("caster", "map"), CASTER, corners, indices, [(drawn, self.outside)], depth, {0: block})
         if k == 1:

@@ -132,6 +132,12 @@ fn warped(w: Warp) -> @location(0) vec4u {
     return vec4u(bitcast<u32>(mixed));
 }
 
+/// Of method "grid": two maps, mixed where they are.
+@fragment
+fn mixed(@builtin(position) at: vec4f) -> @location(0) vec4u {
+    return vec4u(bitcast<u32>(mix(texel(first, vec2i(at.xy)), texel(second, vec2i(at.xy)), p.shares.w)));
+}
+
 // --- The map as a projective texture: first are the places, second is the map --------------------------------------------
 
 fn rounded(x: f32) -> f32 {

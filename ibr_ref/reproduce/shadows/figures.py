@@ -164,9 +164,11 @@ def soft_side_by_side(folder: Path, within: Within) -> Found:
     stage, nine, maps = _warping(name)
     scene = _close_up(stage)
     soft: dict[str, Floats] = {}
-    for i, method in enumerate(("traced", "convolution", "pcss")):
+    for i, method in enumerate(("traced", "convolution")):
         within(f"{method}, the {name}", i, 5)
         soft[method] = shadows.render_soft(scene, SoftParams(method=method)).stages["soft.shadow"]
+    within(f"pcss, the {name}", 2, 5)
+    soft["pcss"] = shadows.render(scene, Params(method="pcss")).stages["accumulate.shadow"]
     for i, (method, made) in enumerate({"direct": None, "warp": maps}.items()):
         within(f"{method}, nine samples, the {name}", i + 3, 5)
         frame = shadows.render(scene, replace(nine, method=method), maps=made)

@@ -178,7 +178,7 @@ def _softened() -> dict[str, Callable[[Scene], Floats]]:
     return {
         "convolution, one plane": _soft(SoftParams(method="convolution", map_size=SIZE, receiver_planes=1)),
         "convolution, four planes": _soft(SoftParams(method="convolution", map_size=SIZE)),
-        "percentage-closer": _soft(SoftParams(method="pcss", map_size=SIZE)),
+        "percentage-closer": _by(Params(method="pcss", map_size=SIZE), None),
     }
 
 

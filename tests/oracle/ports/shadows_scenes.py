@@ -216,6 +216,11 @@ def grazing() -> Case:
     return case(scene(camera=view, receivers=[painted(plate(6.0, -1.0), 1), *walls]), params())
 
 
+def many() -> Case:
+    """Masks, five of 5 x 5 maps."""
+    return case(scene(), params(method="grid", grid_size=5, light_samples=5, map_samples=2))
+
+
 CASES: dict[str, Callable[[], Case]] = {
     make.__name__: cache(make)
     for make in (
@@ -237,6 +242,7 @@ CASES: dict[str, Callable[[], Case]] = {
         verge,
         beyond,
         grazing,
+        many,
     )
 }
 
@@ -264,6 +270,20 @@ ELSEWHERE = {
     "warp-direct-from-centre": "direct",
     "warp-direct-back-faces": "direct",
     "warp-direct-depth-truncated": "coarse",
+    "grid-n-intervals": "many",
+    "grid-range-not-widened": "many",
+    "grid-axes-exchanged": "many",
+    "grid-rows-from-below": "many",
+    "grid-nearest-alone": "many",
+    "grid-mix-reversed": "many",
+    "grid-first-of-the-cell": "many",
+    "grid-mixed-along-x-alone": "many",
+    "grid-cell-rounded": "many",
+    "grid-mix-of-three": "many",
+    "grid-eased": "many",
+    "grid-fractions-of-16": "many",
+    "grid-maps-in-bytes": "many",
+    "grid-pixel-centres": "many",
     "project-gl-depth": "deep",
     "project-r-not-divided": "deep",
     "project-r-not-clamped": "far",

@@ -82,10 +82,9 @@ def test_in_doubles_it_is_the_reference(name: str) -> None:
 def test_in_doubles_it_is_the_reference_on_drawn_scenes(number: int) -> None:
     def agree(case: strategies.Drawn) -> None:
         scene, params = case.scene, case.params
-        if params.method != "grid":
-            warps = params.method == "warp"
-            maps = shadows.prepare(scene, params, controls=case.controls) if warps else None
-            check_exact(Case(scene, params, maps))
+        warps = params.method == "warp"
+        maps = shadows.prepare(scene, params, controls=case.controls) if warps else None
+        check_exact(Case(scene, params, maps))
 
     drawn.run_scene(number, strategies.drawn(), agree)
 

@@ -8,6 +8,7 @@ from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.faults.shadows.accumulate import ACCUMULATE
 from ibr_ref.oracle.faults.shadows.controls import CONTROLS
 from ibr_ref.oracle.faults.shadows.depth import DEPTH
+from ibr_ref.oracle.faults.shadows.grid import GRID
 from ibr_ref.oracle.faults.shadows.maps import MAPS
 from ibr_ref.oracle.faults.shadows.project import PROJECT
 from ibr_ref.oracle.faults.shadows.resolve import RESOLVE
@@ -16,7 +17,7 @@ from ibr_ref.oracle.programs.shadows import Port
 from ibr_ref.oracle.programs.shadows.variants import VARIANTS
 
 MUTANTS: tuple[Mutant, ...] = tuple(
-    mutant for bugs in (MAPS, CONTROLS, WARP, DEPTH, PROJECT, ACCUMULATE, RESOLVE) for mutant in bugs.mutants
+    mutant for bugs in (MAPS, CONTROLS, WARP, GRID, DEPTH, PROJECT, ACCUMULATE, RESOLVE) for mutant in bugs.mutants
 )
 """In the order of the stages."""
 

@@ -9,7 +9,7 @@ from ibr_ref.oracle.faults.shadows.hidden import BELOW_A_BYTE
 from ibr_ref.oracle.programs.program import Floats
 from ibr_ref.oracle.programs.shadows.port import Port
 
-CONTROLS = Bugs("controls")
+CONTROLS = Bugs("controls", only=("warp",))
 
 
 @CONTROLS.add("controls-uv-exchanged")

@@ -12,12 +12,16 @@ from ibr_ref.oracle.programs.shadows.raster import Raster
 from ibr_ref.oracle.programs.shadows.sampler import Sampler
 from ibr_ref.oracle.programs.shadows.warp import Cell
 
-WARP = Bugs("warp")
+WARP = Bugs("warp", only=("warp",))
+
+PLACED = ("warp", "grid")
+"""Where the object's place as a sample sees it matters."""
+ALL = ("warp", "direct", "grid")
 
 ANY_ORDER = "the sum of all samples is the same in any order"
 
 
-@WARP.add("warp-listed-by-distance", hidden=ANY_ORDER)
+@WARP.add("warp-listed-by-distance", only=ALL, hidden=ANY_ORDER)
 class _ByDistance(Port):
     """Samples that are listed are taken from the light's centre outwards."""
 
@@ -230,7 +234,7 @@ class _ClampEarly(Port):
     warp_sampler = _OneLess
 
 
-@WARP.add("warp-sample-sign")
+@WARP.add("warp-sample-sign", only=PLACED)
 class _SampleSign(Port):
     """The object moves with the sample of the light, not against it."""
 
@@ -238,7 +242,7 @@ class _SampleSign(Port):
         return self.do.add(self.offset, self.displacement(place))
 
 
-@WARP.add("warp-world-xy")
+@WARP.add("warp-world-xy", only=PLACED)
 class _WorldXY(Port):
     """The sample's world x and y are taken for those on the axes."""
 
@@ -246,7 +250,7 @@ class _WorldXY(Port):
         return self.do.subtract(self.offset, self.do.subtract(place, self.centre)[:2])
 
 
-@WARP.add("warp-samples-transposed", hidden="the sum of the samples is the same")
+@WARP.add("warp-samples-transposed", only=ALL, hidden="the sum of the samples is the same")
 class _SamplesTransposed(Port):
     """Samples of the light are taken with i outer and j inner."""
 
@@ -254,7 +258,7 @@ class _SamplesTransposed(Port):
         return [(y, x) for x, y in super().steps()]
 
 
-@WARP.add("warp-direct-from-centre")
+@WARP.add("warp-direct-from-centre", only=("direct",))
 class _DirectFromCentre(Port):
     """Every sample's map is rendered from the light's centre."""
 
@@ -267,14 +271,14 @@ class _Back(Raster):
         return (held == 1.0) | (depth > held)
 
 
-@WARP.add("warp-direct-back-faces")
+@WARP.add("warp-direct-back-faces", only=("direct",))
 class _DirectBack(Port):
     """Maps that are rendered for each sample keep the caster's farthest depths."""
 
     direct_raster = _Back
 
 
-@WARP.add("warp-direct-depth-truncated", small=True)
+@WARP.add("warp-direct-depth-truncated", only=("direct",), small=True)
 class _DirectTruncated(Port):
     """Maps that are rendered for each sample hold depths truncated to bytes."""
 
@@ -323,7 +327,7 @@ class _Eased(Port):
         return self.do.multiply(self.do.multiply(f, f), self.do.subtract(3.0, self.do.multiply(2.0, f)))
 
 
-@WARP.add("warp-samples-not-moved")
+@WARP.add("warp-samples-not-moved", only=PLACED)
 class _NotMoved(Port):
     """The map of the light's centre serves all samples."""
 

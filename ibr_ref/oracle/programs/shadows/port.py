@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.programs.program import Floats
+from ibr_ref.oracle.programs.shadows.grid import Grid
 from ibr_ref.oracle.programs.shadows.project import Project
 from ibr_ref.oracle.programs.shadows.resolve import Resolve
 from ibr_ref.oracle.programs.shadows.surface import Picture, Surface
@@ -16,8 +17,8 @@ from ibr_ref.oracle.programs.shadows.warp import Warp, Warped
 Arrays = dict[str, NDArray[Any]]
 
 
-class Port(Picture, Warp, Project, Resolve):
-    """Methods "warp" and "direct". For "warp", inputs["maps"] are the nine maps and their controls."""
+class Port(Picture, Warp, Grid, Project, Resolve):
+    """Methods "warp", "direct" and "grid". For "warp", inputs["maps"] are the nine maps and their controls."""
 
     def render(self) -> Arrays:
         """Every stage array of the contract but the margins, "color" (H, W, 3) and "depth" (H, W)."""
@@ -42,8 +43,8 @@ class Port(Picture, Warp, Project, Resolve):
 
     def _maps(self) -> tuple[Arrays, list[Floats]]:
         """The arrays up to the warp, and the map of each sample."""
-        if self.params.method == "direct":
-            images = [self.direct_map(place) for place in self.places]
+        if self.params.method != "warp":
+            images = [self.sample_map(place) for place in self.places]
             return {"warp.image": self._samples(images)}, images
         positions, controls, prepared = self.positions(), self.controls(), self.images()
         arrays: Arrays = {"maps.positions": positions, "maps.image": self.nine_maps(positions), "controls": controls}
@@ -56,6 +57,10 @@ class Port(Picture, Warp, Project, Resolve):
                 continue
             arrays[f"warp.{name}"] = self._samples([getattr(warp, name) for warp in warps])
         return arrays, [warp.image for warp in warps]
+
+    def sample_map(self, place: Floats) -> Floats:
+        """(S, S) of a sample, where nothing is warped."""
+        return self.direct_map(place) if self.params.method == "direct" else self.grid_map(place)
 
     def _on_picture(self, surface: Surface, place: Floats, image: Floats) -> tuple[Floats, Floats]:
         """coord (H, W, 3) and shadow (H, W) of one sample."""

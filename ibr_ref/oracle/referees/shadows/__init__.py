@@ -18,7 +18,7 @@ _MADE = ("maps.positions", "maps.image", "controls")
 
 
 class ShadowsReferee:
-    """Methods "warp" and "direct"."""
+    """Methods "warp", "direct" and "grid"."""
 
     stages: Sequence[str] = ("maps", "controls", "warp", "depth", "project", "accumulate", "resolve")
     """"depth" is which surface the camera sees: what is projected onto it comes after."""
@@ -40,7 +40,7 @@ class ShadowsReferee:
             self._accepted = Accepted.of(alone)
         judgement = self._accepted.judge(handed)
         own = {name: handed[name] for name in HANDED_OVER if name in handed}
-        if not own or not judgement.wrong.any() or case.params.method == "direct":
+        if not own or not judgement.wrong.any() or case.params.method != "warp":
             return judgement
         given = Inputs(case, device, own, alone)
         if any(made is not None and made.wrong.any() for made in (judged(given, part) for part in _MADE)):

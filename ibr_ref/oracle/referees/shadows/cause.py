@@ -122,5 +122,5 @@ def _inquiry(right: Inputs) -> Inquiry:
 
     sampled: Collection[str] = PIXELS
     # A picture is made with the maps that the case hands over.
-    suspects = [m for m in _SUSPECTS if m.hidden != GIVEN] if right.picture else _SUSPECTS
+    suspects = [m for m in _SUSPECTS if m.applies(right.case.system) and not (right.picture and m.hidden == GIVEN)]
     return Inquiry(mutants=suspects, arrays=ARRAYS, replay=replay, sampled=sampled)

@@ -14,6 +14,7 @@ from ibr_ref.oracle.accept.bounded import exact, stored
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed
+from ibr_ref.oracle.programs.shadows.grid import Grid
 from ibr_ref.oracle.programs.shadows.lights import Lights
 from ibr_ref.oracle.programs.shadows.maps import Maps
 from ibr_ref.oracle.programs.shadows.port import Port
@@ -33,8 +34,10 @@ HANDED_OVER = ("maps.positions", "maps.image")
 SEEN = {*vars(Picture), "surface_raster", "caster_vertices", "clip_coordinates", "applied", "by_product", "product"}
 SEEN |= {"light_centre", "cosine", "toward_eye", "toward_light", "turned", "lambert"}
 """What of a program says what the camera sees, and in which light."""
-MAPPED = {*vars(Maps), *vars(Warp), *vars(Lights)} - {"shadow_sampler", "surface_raster", "on"}
+MAPPED = {*vars(Maps), *vars(Warp), *vars(Grid), *vars(Lights)} - {"shadow_sampler", "surface_raster", "on"}
 """What of a program says what is projected."""
+DRAWN = {*vars(Maps), *vars(Lights), "map_raster", "intervals", "grid_ends", "grid_position"}
+"""What says what the maps of a grid are, whatever is made of them."""
 Spot = tuple[Place, Place]
 """Along x and along y."""
 
@@ -74,6 +77,11 @@ class Inputs:
     def direct(self) -> bool:
         """Whether maps are rendered for every sample."""
         return bool(self.case.params.method == "direct")
+
+    @property
+    def warps(self) -> bool:
+        """Whether they are warped from nine."""
+        return bool(self.case.params.method == "warp")
 
     @property
     def count(self) -> int:
@@ -201,7 +209,7 @@ class Inputs:
     @property
     def projective(self) -> bool:
         """Whether maps are passed through at the pace of perspective."""
-        return bool(not self.direct and self.case.params.interpolation == "projective")
+        return bool(self.warps and self.case.params.interpolation == "projective")
 
     @cached_property
     def depths(self) -> Number:
@@ -297,8 +305,11 @@ class Inputs:
 
     def made_map(self, sample: int) -> Number:
         """(S, S) whichever of the legal places a sample finds."""
-        if self.direct:
-            return self.model.machine.of(self.model.program.direct_map(self.model.program.places[sample]))
+        program = self.model.program
+        if not self.warps:
+            if self.right is not None and not self.model.changes(DRAWN):
+                program.grid_images = self.right.model.program.grid_images
+            return self.model.machine.of(program.sample_map(program.places[sample]))
         first, *others = (self.made_image(sample, spot) for spot in self.places(sample))
         found: Number = self.model.machine.either(first, *(lambda x=x: x for x in others))
         return found

@@ -21,7 +21,7 @@ from ibr_ref.oracle.referees.shadows.model import stacked
 def positions(given: Inputs) -> Judgement | None:
     """Where the object stands in the nine maps."""
     found = given.own("maps.positions", sampled=False)
-    if found is None or given.direct:
+    if found is None or not given.warps:
         return None
     legal = given.model.bounded(given.model.program.positions())
     right, width = np.asarray(legal.allows(found).all(axis=-1)), 2.0 * legal.error.max(axis=-1)
@@ -31,7 +31,7 @@ def positions(given: Inputs) -> Judgement | None:
 def images(given: Inputs) -> Judgement | None:
     """The nine maps, at the port's own positions."""
     found = given.own("maps.image", sampled=False)
-    if found is None or given.direct:
+    if found is None or not given.warps:
         return None
     program, model = given.model.program, given.model
     own, legal = given.own("maps.positions", sampled=False), program.positions()
@@ -75,7 +75,7 @@ def _images_at_once(given: Inputs, positions: Number, found: Floats) -> Judgemen
 def controls(given: Inputs) -> Judgement | None:
     """The control points as they were given."""
     found = given.own("controls", sampled=False)
-    if found is None or given.direct:
+    if found is None or not given.warps:
         return None
     bound = given.model.bounded(given.given_controls)
     right = np.asarray(bound.allows(found).all(axis=-1))
@@ -86,7 +86,7 @@ def spots(given: Inputs) -> Judgement | None:
     """Cell and fraction together, axis by axis."""
     cells, fractions = given.own("warp.cell"), given.own("warp.fraction")
     own = {name: a for name, a in (("warp.cell", cells), ("warp.fraction", fractions)) if a is not None}
-    if not own or given.direct:
+    if not own or not given.warps:
         return None
     right = {name: np.zeros((given.count, 2), np.bool_) for name in own}
     together, undecided, width = np.zeros((given.count, 2), np.bool_), np.zeros((given.count, 2), np.bool_), []
@@ -150,15 +150,15 @@ def grids(given: Inputs) -> Judgement | None:
 
 
 def warped(given: Inputs) -> Judgement | None:
-    """The map of each sample; method="direct": as it is rendered."""
-    if not given.direct:
+    """The map of each sample: warped, as it is rendered, or from a grid."""
+    if given.warps:
         return _texels(given, "warp.image", given.made_image)
     found = given.own("warp.image")
     if found is None:
         return None
     program, model, shape = given.model.program, given.model, np.shape(given.handed["warp.image"])
-    if not program.right("direct_map", "caster_map", "coverage", "share", "depths"):
-        legal = [model.bounded(program.direct_map(place)) for place in program.places]
+    if not given.direct or not program.right("direct_map", "caster_map", "coverage", "share", "depths"):
+        legal = [model.bounded(program.sample_map(place)) for place in program.places]
         right = np.stack([bound.allows(image) for bound, image in zip(legal, found, strict=True)]).reshape(shape)
         width = np.stack([2.0 * bound.error for bound in legal]).reshape(shape)
         return judgement("warp", "texel", ["warp.image"], [right], width, undecided=width > maps.VISIBLE)
@@ -171,7 +171,7 @@ def warped(given: Inputs) -> Judgement | None:
 
 def _points(given: Inputs, name: str, make: Callable[[int, Spot], Number]) -> Judgement | None:
     found = given.own(name)
-    if found is None or given.direct:
+    if found is None or not given.warps:
         return None
     feeds = fed("shadows", [name], given.handed)
     right, width = _compared(given, found, make, feeds)
@@ -180,7 +180,7 @@ def _points(given: Inputs, name: str, make: Callable[[int, Spot], Number]) -> Ju
 
 def _texels(given: Inputs, name: str, make: Callable[[int, Spot], Number]) -> Judgement | None:
     found = given.own(name)
-    if found is None or given.direct:
+    if found is None or not given.warps:
         return None
     feeds = fed("shadows", [name], given.handed)
     return _judged(given, "texel", name, *_compared(given, found, make, feeds), feeds)

@@ -139,7 +139,7 @@ def _stored(given: Inputs, found: Floats) -> Bools:
 def _fed(given: Inputs, *names: str) -> tuple[str, ...]:
     """The port's arrays that some are computed from; method="direct" warps nothing."""
     found = fed("shadows", names, given.handed)
-    return tuple(name for name in found if not given.direct or name == "warp.image" or not name.startswith(_WARPED))
+    return tuple(name for name in found if given.warps or name == "warp.image" or not name.startswith(_WARPED))
 
 
 def _numbers(array: Floats) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ibr_ref.oracle.judgement import TraceRow
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.stages import PARTS
+from ibr_ref.oracle.referees.shadows.trace.grid import grid_texel
 from ibr_ref.oracle.referees.shadows.trace.maps import control, depth, map_texel, position
 from ibr_ref.oracle.referees.shadows.trace.picture import pixel
 from ibr_ref.oracle.referees.shadows.trace.warp import grid_point, paced, place, warped_texel
@@ -32,6 +33,8 @@ def trace(given: Inputs, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
         return depth(given, index)
     if array == "maps.image" or (array == "warp.image" and given.direct):
         return map_texel(given, array, index)
+    if array == "warp.image" and not given.warps:
+        return grid_texel(given, index)
     if array == "controls":
         return control(given, index)
     if array in ("warp.cell", "warp.fraction"):
