@@ -42,7 +42,7 @@ class Ways(Choices):
     def give_up(self, x: Number) -> None:
         """The lanes of some numbers are lost."""
         if x.lane is not None:
-            self.lost[x.lane] = True
+            self.run.lost[x.lane] = True
 
     def explored(self) -> Explored:
         """What tells states apart."""
@@ -94,7 +94,7 @@ class Explored:
         self.ops = ops
         self.keys: Ints = np.zeros(0, np.int64)
         self.x = Number(ops, np.zeros(0), np.zeros(0), {}, np.zeros(0, np.int64))
-        self.counts = np.zeros(len(ops.lost), np.int64)
+        self.counts = np.zeros(len(ops.run.lost), np.int64)
 
     def fresh(self, keys: Ints, x: Any) -> tuple[Ints, Number]:
         """Rows to go on from, and their numbers: of those with one key one, with the bounds of all there ever were."""
@@ -131,8 +131,8 @@ class Explored:
         if x.lane is None:
             return new
         self.counts += np.bincount(x.lane[new], minlength=len(self.counts))
-        self.ops.lost |= self.counts > MOST_STATES
-        return np.asarray(~self.ops.lost[x.lane], np.bool_)
+        self.ops.run.lost |= self.counts > MOST_STATES
+        return np.asarray(~self.ops.run.lost[x.lane], np.bool_)
 
 
 def _pairs(keys: Ints) -> Bools:

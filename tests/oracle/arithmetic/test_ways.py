@@ -28,7 +28,7 @@ def test_a_comparison_that_may_go_either_way_parts_a_state() -> None:
     may, may_not = machine.parted(number(machine, [-1.0, 0.0, 1.0], [0.5, 0.5, 0.5], [0, 1, 2]) > 0.0)
     assert may.tolist() == [False, True, True]
     assert may_not.tolist() == [True, True, False]
-    assert not machine.forks
+    assert not machine.run.forks
 
 
 def test_all_whole_numbers_are_told_and_too_many_lose_the_lane() -> None:
@@ -36,7 +36,7 @@ def test_all_whole_numbers_are_told_and_too_many_lose_the_lane() -> None:
     rows, whole = machine.wholes(number(machine, [1.5, 3.0, 0.0], [0.1, 0.1, 9.0], [0, 1, 2]))
     assert rows.tolist() == [0, 1, 1]
     assert whole.tolist() == [1, 2, 3]
-    assert machine.lost.tolist() == [False, False, True]
+    assert machine.run.lost.tolist() == [False, False, True]
 
 
 def test_a_state_comes_again_only_if_it_is_wider() -> None:
@@ -61,7 +61,7 @@ def test_too_many_states_lose_the_lane() -> None:
     lane = np.zeros(count + 1, np.int64)
     lane[-1] = 1
     rows, _ = machine.explored().fresh(keys, number(machine, np.zeros(count + 1), 0.0, lane))
-    assert machine.lost.tolist() == [True, False]
+    assert machine.run.lost.tolist() == [True, False]
     assert rows.tolist() == [count]
 
 

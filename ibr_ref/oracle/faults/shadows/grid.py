@@ -8,7 +8,7 @@ import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.faults.shadows.hidden import BELOW_A_BYTE
-from ibr_ref.oracle.programs.program import Bools, Floats, Vector
+from ibr_ref.oracle.programs.program import Bools, Floats, Path, Vector
 from ibr_ref.oracle.programs.shadows.port import Port
 
 GRID = Bugs("warp", only=("grid",))
@@ -50,7 +50,7 @@ class _RowsFromBelow(Port):
 class _NearestAlone(Port):
     """The nearest map is taken where the four are to be mixed."""
 
-    taken: ClassVar[dict[str, Any]] = {"grid_mix": False}
+    taken: ClassVar[dict[Path, Any]] = {("params", "grid_mix"): False}
 
 
 @GRID.add("grid-mix-reversed")
