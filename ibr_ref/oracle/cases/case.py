@@ -49,6 +49,10 @@ class Case:
         field, judged = methods.named(self.method).judged
         checks.choice(field, getattr(self.params, field), judged)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what referees keep: another process makes its own."""
+        return {**vars(self), "kept": {}}
+
     @cached_property
     def frame(self) -> Frame:
         """What the reference draws, with all stages."""

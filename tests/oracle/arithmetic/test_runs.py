@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import threading
 from functools import partial
 
@@ -14,6 +15,7 @@ from ibr_ref.oracle.cases import build
 from ibr_ref.oracle.device import VULKAN
 from ibr_ref.oracle.examination import examine
 from ibr_ref.oracle.referees.displacement import model
+from tests.oracle.tiny_cases import TINY
 
 
 def test_jobs_come_back_in_their_order_and_see_only_the_numbers_before() -> None:
@@ -61,3 +63,13 @@ def test_a_verdict_is_the_same_on_any_threads_and_in_any_parts(threads: int, mon
         assert judged() == whole
     finally:
         numba.set_num_threads(before)
+
+
+def test_a_judged_case_can_be_handed_to_another_process() -> None:
+    """As `ibr_ref.view` does in a notebook: what referees keep, threads and all, stays here."""
+    case = TINY["displacement-tile"]()
+    examine(case, {"color": case.frame.color}, profile="ieee32")
+    assert case.kept
+    again = pickle.loads(pickle.dumps(case))
+    assert again.kept == {}
+    np.testing.assert_array_equal(again.frame.color, case.frame.color)
