@@ -6,21 +6,20 @@ on the polygon, and finds the hit there; `fragment.draw` takes it from there as 
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from ibr_ref.array_types import Floats
 from ibr_ref.displacement.buffers import Hits, Uniforms
 from ibr_ref.displacement.inputs import Params
+from ibr_ref.displacement.prepared import prepared
 from ibr_ref.displacement.raster import base_points
 from ibr_ref.displacement.sought import Found, Sought
 from ibr_ref.displacement.textures import Map
 from ibr_ref.methods import Room
 from ibr_ref.scene import BasePolygon
-
-_PREPARED: WeakKeyDictionary[BasePolygon, dict[tuple[Any, ...], Any]] = WeakKeyDictionary()
 
 
 def search(
@@ -45,7 +44,7 @@ def search(
         constants=constants,
         params=params,
         found=Found(_no_hits(pixels), np.zeros(pixels, np.int32)),
-        kept=_PREPARED.setdefault(polygon, {}),
+        prepared=partial(prepared, polygon),
     )
     room.open().search(sought)
     return sought.found

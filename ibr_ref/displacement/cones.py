@@ -144,6 +144,6 @@ def cone_map(heights: NDArray[np.float64], repeat: bool, relaxed: bool) -> NDArr
 def cone_ratios(s: Sought, relaxed: bool) -> NDArray[np.float64]:
     """The cone map of a polygon, flat."""
     ratios: NDArray[np.float64] = s.prepared(
-        ("cones", relaxed), lambda: cone_map(s.heights, s.repeat is not None, relaxed).reshape(-1)
+        ("cones", relaxed), lambda: cone_map(s.heights, s.repeat is not None, relaxed)
     )
-    return ratios
+    return ratios.reshape(-1)

@@ -77,7 +77,7 @@ def donnelly_search(repeat, points, eye, texels, columns, rows, layers, steps, f
 def search(s: Sought) -> None:
     """Hits of a polygon."""
     layers, repeat = s.params.distance_layers, s.repeat is not None
-    texels = s.prepared(("distances", layers), lambda: distance_texture(s.heights, layers, repeat).reshape(-1))
+    texels = s.prepared(("distances", layers), lambda: distance_texture(s.heights, layers, repeat)).reshape(-1)
     donnelly_search(
         s.repeat, s.points, s.constants.eye, texels, s.height.columns, s.height.rows, layers, s.params.linear_steps,
         *s.found,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -12,8 +10,9 @@ from ibr_ref.displacement.buffers import Settings
 from ibr_ref.displacement.contract import FRAGMENT_FIELDS
 from ibr_ref.displacement.fragment import BUILT_IN, draw
 from ibr_ref.displacement.inputs import Params, Scene
-from ibr_ref.displacement.maxima import Maxima, build
+from ibr_ref.displacement.maxima import build
 from ibr_ref.displacement.patch_space import uniforms
+from ibr_ref.displacement.prepared import prepared
 from ibr_ref.displacement.resolve import Target, resolve_margins, target_for
 from ibr_ref.displacement.textures import Map, Maps
 from ibr_ref.displacement.vertex import Faces, vertex_stage
@@ -95,16 +94,6 @@ def _map(texels: ArrayLike | None) -> Map:
     return Map(image.reshape(-1), float(image.shape[1]), float(image.shape[0]))
 
 
-_MAXIMA: WeakKeyDictionary[BasePolygon, Maxima] = WeakKeyDictionary()
-"""What the height maps' coarse maps are, for as long as their polygons live: a polygon is frozen, and so are they."""
-
-
-def _maxima(polygon: BasePolygon, height: Map) -> Maxima:
-    if polygon not in _MAXIMA:
-        _MAXIMA[polygon] = build(height.texels, int(height.rows), int(height.columns))
-    return _MAXIMA[polygon]
-
-
 def _maps(polygon: BasePolygon) -> Maps:
     height = _map(polygon.height_map)
     return Maps(
@@ -112,7 +101,7 @@ def _maps(polygon: BasePolygon) -> Maps:
         color=_map(polygon.color_map),
         normal=_map(polygon.normal_map),
         facade=_map(polygon.facade_map),
-        maxima=_maxima(polygon, height),
+        maxima=prepared(polygon, ("maxima",), lambda: build(height.texels, int(height.rows), int(height.columns))),
     )
 
 

@@ -37,11 +37,5 @@ class Sought(NamedTuple):
     """Params, which a file with kernels does not name."""
     found: Found
     """Filled by the search: all discarded, and no fetches."""
-    kept: dict[tuple[Any, ...], Any]
-    """Of this polygon, for as long as it lives."""
-
-    def prepared(self, key: tuple[Any, ...], make: Callable[[], Any]) -> Any:
-        """What a search needs beforehand (a mip chain, distances, cones, a quadtree), made once for each polygon."""
-        if key not in self.kept:
-            self.kept[key] = make()
-        return self.kept[key]
+    prepared: Callable[[tuple[Any, ...], Callable[[], Any]], Any]
+    """What a search needs beforehand, by a key, made once for the polygon: `prepared`."""

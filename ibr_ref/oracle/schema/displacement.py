@@ -7,10 +7,8 @@ from typing import Any, Literal
 from pydantic import Field
 
 from ibr_ref import displacement
-from ibr_ref.displacement.cone_maps import RELAXED, cone_map_of
-from ibr_ref.displacement.distance_maps import distance_map_of
 from ibr_ref.displacement.patch_space import uniforms
-from ibr_ref.displacement.quadtrees import levels_of
+from ibr_ref.displacement.port_maps import RELAXED, cone_map_of, distance_map_of, levels_of
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.schema.base import (
     ArrayFile,

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ibr_ref.displacement.cone_maps import cone_map_of
+from ibr_ref.displacement.port_maps import cone_map_of
 from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Patch
 from ibr_ref.oracle.programs.displacement.searches.cone import Cone, RelaxedCone

@@ -7,7 +7,7 @@ from functools import reduce
 
 import numpy as np
 
-from ibr_ref.displacement.distance_maps import distance_map_of
+from ibr_ref.displacement.port_maps import distance_map_of
 from ibr_ref.oracle.programs.displacement.case import Floats, Ints, Patch
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.searches.below import Descent, Found
