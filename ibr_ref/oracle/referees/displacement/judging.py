@@ -14,10 +14,14 @@ from ibr_ref.oracle.accept.bounded import Bounded
 from ibr_ref.oracle.accept.bytes import allows_color
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.programs.displacement.searches.below import Descent
 from ibr_ref.oracle.referees.displacement.drawn_faces import judge_faces, other_faces
 from ibr_ref.oracle.referees.displacement.replay import Port, march_field, not_covered, raster_field, shade_field
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades
 from ibr_ref.oracle.referees.outcomes import judged
+
+VAGUE = 1.0 / 16.0
+"""Of the volume's height: hits that far apart say nothing, and count as undecided."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -93,6 +97,14 @@ def _boundless(pixels: int, pixel: Ints, fields: Sequence[Any]) -> Bools:
     return result
 
 
+def _apart(pixels: int, hits: Hits) -> Floats:
+    """(pixels,) from the lowest to the highest hit."""
+    low, high, kept = np.full(pixels, np.inf), np.full(pixels, -np.inf), hits.take(hits.kept)
+    np.minimum.at(low, kept.pixel, kept.hit[2].low)
+    np.maximum.at(high, kept.pixel, kept.hit[2].high)
+    return np.asarray(np.maximum(high - low, 0.0), np.float64)
+
+
 def _several(pixels: int, pixel: Ints) -> Bools:
     """(pixels,) where there is more than one outcome."""
     return np.asarray(np.bincount(pixel, minlength=pixels) > 1, np.bool_)
@@ -126,6 +138,8 @@ def judge_march(port: Port, hits: Hits, bare: Bools, points: Points, lost: Ints)
     np.minimum.at(least, hits.pixel, hits.hit_index.astype(np.float64))
     np.maximum.at(most, hits.pixel, hits.hit_index.astype(np.float64))
     undecided = most - least > 1
+    if isinstance(port.model.program, Descent):  # its indices do not say how far apart hits are
+        undecided |= _apart(port.pixels, hits) > VAGUE
     undecided |= _boundless(port.pixels, hits.pixel, fields)
     wrong[lost], undecided[lost] = False, True
     width = _width(port.pixels, hits.pixel, fields)

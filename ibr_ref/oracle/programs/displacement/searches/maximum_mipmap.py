@@ -167,6 +167,7 @@ class MaximumMipmap(Leaf, Descent, search="maximum_mipmap"):
             after, ends = self.stepped(walk, states, node)
             yield states, node, ends
             states = after
+        yield states, self.node(walk, states), [self.missed(states)]
 
     def told(self, patch: Patch, rays: Rays) -> Iterator[tuple[str, Floats]]:
         """Node by node of the first ray, which is the only one that a trace follows."""
@@ -270,9 +271,12 @@ class MaximumMipmap(Leaf, Descent, search="maximum_mipmap"):
         some = np.union1d(np.flatnonzero(passes), leaf[on])
         goes, ends = self.do.parted(self.goes_on(walk, states.some(some), node.some(some)))
         moves += self.go_on(walk, states, node, some[goes])
-        done = states.some(some[ends])
-        hits.append(Ends(done.ray, np.full(len(done.ray), MISSED), self.do.in_lanes(0.0, done.depth)))
+        hits.append(self.missed(states.some(some[ends])))
         return States.joined([lower, self.entered(walk, node, moves)]), hits
+
+    def missed(self, states: States) -> Ends:
+        """Without a hit, wherever that is."""
+        return Ends(states.ray, np.full(len(states.ray), MISSED), self.do.in_lanes(0.0, states.depth))
 
     def passes_over(self, node: Node) -> Bools:
         """Whether the ray leaves a node above its highest point."""
