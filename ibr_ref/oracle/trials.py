@@ -23,7 +23,6 @@ FREEDOMS: dict[str, Any] = {"subpixel_bits": 4, "filter_result": "unorm8"}
 """What devices in use do and no profile grants: rasterize with the standards' least precision, filter bytes in bytes."""
 
 LIMITS: dict[str, Any] = {
-    **FREEDOMS,
     "depth_format": "unorm16",
     "texel_weight_bits": 8,
     "varyings": "unsnapped",
@@ -31,8 +30,10 @@ LIMITS: dict[str, Any] = {
     "clip_border": "allowed",
     "setup": "whole",
     "unorm_rounding": "either",
+    **FREEDOMS,
 }
-"""What some device does of all that can be declared, the coarsest in use: a port may say too little of its own."""
+"""What some device does of all that can be declared, the coarsest in use: a port may say too little of its own. Those that
+leave the most open, and take the longest, come last."""
 
 FEW = 24
 """Wrong pixels that are looked at before all."""
@@ -147,9 +148,12 @@ def needed(case: Case, handed: Handed, failed: Trial, *, limits: bool = False) -
     }
     if not more or not explains(more):
         return {}
-    for key in [*more]:
+    for key, value in more.items() if len(more) > 1 else ():
+        if explains({key: value}):
+            return {key: value}
+    for key in [*more] if len(more) > 2 else ():
         fewer = {name: value for name, value in more.items() if name != key}
-        if fewer and explains(fewer):
+        if explains(fewer):
             more = fewer
     return more
 

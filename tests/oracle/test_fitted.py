@@ -23,7 +23,7 @@ def beyond(value: float) -> np.ndarray | None:
 @pytest.mark.parametrize(("start", "value"), [(2.0, 2.17), (2.0, 0.4), (0.0, 1.3)])
 def test_a_smooth_one(start: float, value: float) -> None:
     noise = np.random.default_rng(1).uniform(-1e-7, 1e-7, 97)
-    found = fitted(start, power, X**value + noise, SLACK, jumps=False)
+    found = fitted(start, X**start, power, X**value + noise, SLACK, jumps=False)
     assert value in found
     assert found[0] == float(f"{value:.1g}")
 
@@ -31,15 +31,16 @@ def test_a_smooth_one(start: float, value: float) -> None:
 @pytest.mark.parametrize(("start", "value"), [(1.0, 1.52), (1.0, 0.31), (1.5, 2.8)])
 def test_a_bound(start: float, value: float) -> None:
     target = np.where(value < X, 1.0, 0.0)
-    found = fitted(start, beyond, target, SLACK, jumps=True)
+    found = fitted(start, beyond(start), beyond, target, SLACK, jumps=True)
     assert any(np.array_equal(beyond(x), target) for x in found)
 
 
 @pytest.mark.parametrize("jumps", [False, True])
 def test_another_fault(jumps: bool) -> None:
     target = np.random.default_rng(2).uniform(0.0, 1.0, 97)
-    assert fitted(1.0, beyond if jumps else power, target, SLACK, jumps=jumps) == []
+    draw = beyond if jumps else power
+    assert fitted(1.0, draw(1.0), draw, target, SLACK, jumps=jumps) == []
 
 
 def test_results_of_another_number() -> None:
-    assert fitted(1.0, power, np.zeros(5), np.zeros(5), jumps=False) == []
+    assert fitted(1.0, X, power, np.zeros(5), np.zeros(5), jumps=False) == []

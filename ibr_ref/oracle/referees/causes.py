@@ -126,9 +126,12 @@ class Numbers:
 
     def fitting(self, wrong: Judgement) -> Iterator[list[list[Mutant]]]:
         """And with those that its results look like: of each number some values, those of the fewest digits first."""
+        every, some = np.ones_like(wrong.wrong), _spread_out(wrong.wrong)
+        first = {jumps: self._drawn(self.port, wrong, every if jumps else some) for jumps in (False, True)}
         for setting in self.settings:
             if not isinstance(setting.value(self.case), int):
-                values = self._fitted(setting, wrong)
+                among = every if setting.jumps else some
+                values = self._fitted(setting, wrong, among, first[setting.jumps])
                 yield [setting.suspects(self.port, self.case, value, LOOKS_LIKE) for value in values]
 
     def recognizes(self, inquiry: Inquiry, wrong: Judgement, name: str) -> bool:
@@ -142,21 +145,24 @@ class Numbers:
         ]
         return replace(inquiry, mutants=[*inquiry.mutants, *self.listed(), *found]).recognizes(wrong, name)
 
-    def _fitted(self, setting: Setting, wrong: Judgement) -> list[float]:
-        among = np.ones_like(wrong.wrong) if setting.jumps else _spread_out(wrong.wrong)
-        names = [name for name in wrong.arrays if name in self.handed and not isinstance(self.handed[name], tuple)]
-
+    def _fitted(self, setting: Setting, wrong: Judgement, among: Bools, first: Floats) -> list[float]:
         def draw(value: float) -> Floats | None:
-            if not setting.allows(self.case, value):
-                return None
-            kind = setting.port(self.port, value)
-            with np.errstate(all="ignore"):
-                program: Any = kind(self.case.scene, self.case.params, Policy(float_bits=64), self.case.inputs)
-                arrays = self.draw(program, among)
-            return _row(arrays, names, among)
+            allowed = setting.allows(self.case, value)
+            return self._drawn(setting.port(self.port, value), wrong, among) if allowed else None
 
+        names = self._compared(wrong)
         target, slack = _row(self.handed, names, among), _slack(self.handed, names, among)
-        return fitted(float(setting.value(self.case)), draw, target, slack, jumps=setting.jumps)
+        with np.errstate(all="ignore"):
+            return fitted(float(setting.value(self.case)), first, draw, target, slack, jumps=setting.jumps)
+
+    def _drawn(self, kind: type[Any], wrong: Judgement, among: Bools) -> Floats:
+        """(n,) what a program makes of a stage, in doubles."""
+        with np.errstate(all="ignore"):
+            program = kind(self.case.scene, self.case.params, Policy(float_bits=64), self.case.inputs)
+            return _row(self.draw(program, among), self._compared(wrong), among)
+
+    def _compared(self, wrong: Judgement) -> list[str]:
+        return [name for name in wrong.arrays if name in self.handed and not isinstance(self.handed[name], tuple)]
 
 
 def explained(

@@ -9,13 +9,15 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Bools, Floats
 
 Draw = Callable[[float], Floats | None]
 """Results with a value, in a row; None where it is not allowed, or there are others in number."""
 
 TURNS, EARLY = 8, 2
 """Of Newton's method at most; and after how many a number must have come nearer."""
+PROMISED, REACHED = 0.9, 0.2
+"""What a first step must promise to leave of the differences, and of how many of them at least."""
 STEP = 2.0**-16
 """Of its difference quotients, relative: some thousand times what rounding leaves of doubles' results."""
 SMALL = 2.0**-6
@@ -32,15 +34,15 @@ DIGITS = 9
 """Those of a float32."""
 
 
-def fitted(start: float, draw: Draw, target: Floats, slack: Floats, *, jumps: bool) -> list[float]:
+def fitted(start: float, first: Floats, draw: Draw, target: Floats, slack: Floats, *, jumps: bool) -> list[float]:
     """What explains the target, rounded to one digit, two and so on; nothing where no value does.
 
-    target, slack: (n,) a port's results, and how far they may be from the plain ones. jumps: results do, at a bound.
+    first: (n,) results with the value that it starts from. target, slack: (n,) a port's, and how far they may be from the
+    plain ones. jumps: results do, at a bound.
     """
-    here = draw(start)
-    if here is None or here.shape != target.shape:
+    if first.shape != target.shape:
         return []
-    value = (_bounded if jumps else _smooth)(start, here, draw, target, slack)
+    value = (_bounded if jumps else _smooth)(start, first, draw, target, slack)
     return [] if value is None else [*dict.fromkeys(float(f"{value:.{n}g}") for n in range(1, DIGITS + 1))]
 
 
@@ -56,6 +58,8 @@ def _smooth(start: float, first: Floats, draw: Draw, target: Floats, slack: Floa
         if not off.any():
             return None
         move = _middle((target - here)[used] / slopes[used], np.abs(slopes[used]))
+        if not turn and _hopeless(target - here, slack, off, move * slopes):
+            return None
         moved = _moved(x, move, draw)
         if moved is None:
             return None
@@ -67,6 +71,13 @@ def _smooth(start: float, first: Floats, draw: Draw, target: Floats, slack: Floa
         if settled or turn == TURNS - 1:
             return x if left < MOST_LEFT else None
     return None
+
+
+def _hopeless(apart: Floats, slack: Floats, off: Bools, change: Floats) -> bool:
+    """Whether much of what differs hangs on something else, or a first step comes no nearer."""
+    if np.count_nonzero(off) < REACHED * np.count_nonzero(np.abs(apart) > slack):
+        return True
+    return not np.median(np.abs(apart - change)[off] / np.abs(apart)[off]) < PROMISED
 
 
 def _slopes(x: float, here: Floats, draw: Draw) -> Floats | None:

@@ -28,7 +28,7 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
     Bugs of the stage first, then, where none of them does, those that may hide in it; of a picture those of all stages. And
     the numbers of the case that do, or that the port's results look like.
     """
-    inquiry, numbers = _inquiry(case, device, handed), _numbers(case, handed)
+    inquiry, numbers = _inquiry(case, device, handed), _numbers(case, handed, wrong.stage)
     if wrong.stage == "image":
         return explained(inquiry, numbers, wrong, ARRAYS)
     return explained(inquiry, numbers, wrong, (wrong.stage,), inquiry.hidden_in(wrong.stage, handed))
@@ -36,10 +36,10 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
 
 def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
     """Whether the bug of that name explains every element of a stage, or of a picture."""
-    return _numbers(case, handed).recognizes(_inquiry(case, device, handed), wrong, cause)
+    return _numbers(case, handed, wrong.stage).recognizes(_inquiry(case, device, handed), wrong, cause)
 
 
-def _numbers(case: Case, handed: Handed) -> Numbers:
+def _numbers(case: Case, handed: Handed, stage: str) -> Numbers:
     """Those of the law, of the light and of the background."""
     light = case.scene.light
     settings = [Setting(path=("params", name), stages=("vertex",), read_by=("width",)) for name in LAW]
@@ -49,7 +49,15 @@ def _numbers(case: Case, handed: Handed) -> Numbers:
             Setting(path=("scene", "light", name), stages=("vertex",), read_by=(method,))
             for name, method in LIT.items()
         ]
-    return Numbers(case=case, port=Program, settings=settings, handed=handed)
+
+    def draw(program: Any, among: Bools) -> dict[str, Any]:
+        codes = case.inputs.get("normals")
+        found: dict[str, Any] = (
+            program.render() if stage != "vertex" or codes is None else program.vertices(program.atlas(), codes)
+        )
+        return found
+
+    return Numbers(case=case, port=Program, settings=settings, handed=handed, draw=draw)
 
 
 def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
