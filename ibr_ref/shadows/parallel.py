@@ -101,10 +101,15 @@ def window_around(frame: Frame, vertices: Floats, farthest: float) -> Window:
     return Window(low - border, high + border, near, far)
 
 
+def planes(window: Window) -> tuple[float, float]:
+    """Distances of the map's near and far plane."""
+    return window.near * (1.0 - _ROOM), window.far * (1.0 + _ROOM)
+
+
 def clip_from_view(window: Window) -> Floats:
     """(4, 4) the projection onto the window, off the axis."""
     (x0, y0), (x1, y1) = window.low, window.high
-    n, f = window.near * (1.0 - _ROOM), window.far * (1.0 + _ROOM)
+    n, f = planes(window)
     return np.array(
         [
             [2.0 / (x1 - x0), 0.0, (x1 + x0) / (x1 - x0), 0.0],
@@ -122,6 +127,6 @@ def view_of_caster(frame: Frame, window: Window, vertices: Floats, triangles: ND
 
 def to_distance(depth: Floats, window: Window) -> Floats:
     """(S, S) distances h from window depths; infinite where nothing is."""
-    n, f = window.near * (1.0 - _ROOM), window.far * (1.0 + _ROOM)
+    n, f = planes(window)
     h: Floats = n * f / (f - depth * (f - n))
     return np.where(depth < 1.0, h, np.inf)

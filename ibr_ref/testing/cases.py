@@ -71,7 +71,10 @@ def splatting_cases(draw: DrawFn, shape: str | None = None) -> Case:
 def shadow_cases(draw: DrawFn, method: str | None = None) -> Case:
     """Shadows by warped maps, by rendered ones, and by those of a grid."""
     found = draw(shadows.drawn(PIXELS))
-    params = found.params if method is None else replace(found.params, method=method)
+    params = found.params
+    if method is not None:
+        samples = 1 if method == "pcss" else params.light_samples
+        params = replace(params, method=method, light_samples=samples)
     _assume_room(found.scene.camera)
     maps = {"maps": prepare(found.scene, params, controls=found.controls)} if params.method == "warp" else {}
     return Case(name="shadows-drawn", about=ABOUT, profile=PROFILE, scene=found.scene, params=params, inputs=maps)

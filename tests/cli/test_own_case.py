@@ -51,7 +51,7 @@ def test_what_is_rendered_is_a_case(
     assert run("check", folder, tmp_path / "drawn")[0] == 0
 
 
-@pytest.mark.parametrize(("method", "option"), [("displacement", "exact"), ("shadows", "pcss"), ("splatting", "")])
+@pytest.mark.parametrize(("method", "option"), [("displacement", "exact"), ("shadows", "traced"), ("splatting", "")])
 def test_what_is_not_judged_is_no_case(
     run: Run, tmp_path: Path, height: Path, cube: Path, method: str, option: str
 ) -> None:

@@ -297,6 +297,16 @@ def many() -> Case:
     return _case("many", "typical", about, _scene(), params, profile="gl")
 
 
+def penumbra() -> Case:
+    """The whole light."""
+    about = "Percentage-closer soft shadows: 12 points for blockers, 16 for the filter; a table that the caster cuts."
+    light = _light(half_edges=((0.5, 0.0, 0.0), (0.15, 0.4, 0.0)))
+    table = painted(plate(0.6, 0.05), 2)
+    scene = _scene(light=light, receivers=[painted(plate(FLOOR, -1.0), 1), table, wall(1.1)])
+    params = _params(method="pcss", bias=0.55, search_points=12, filter_points=16)
+    return _case("penumbra", "typical", about, scene, params, profile="webgpu")
+
+
 def stage() -> Case:
     """Of real size."""
     about = "A chair on a stage, 640 x 480, five light samples, maps of 128 x 128, grids of 15 x 5 as in the paper."
@@ -307,7 +317,7 @@ def stage() -> Case:
 
 _MAKERS = (
     box, soft, nearest, depths, direct, masks, bent, oblique, beside, border, behind, far, filtered, coarse, pace, thin,
-    listed, verge, beyond, many, stage,
+    listed, verge, beyond, many, penumbra, stage,
 )  # fmt: skip
 
 CASES: dict[str, Callable[[], Case]] = {f"shadows-{make.__name__}": cache(make) for make in _MAKERS}

@@ -66,7 +66,9 @@ SHADOWS: dict[str, tuple[str, ...]] = {
     "warp.image": ("warp.shares", "warp.row_grids", "warp.rows", "warp.grid"),
     "depth": (),
     "project.coord": ("depth",),
-    "project.shadow": ("warp.image", "depth", "project.coord"),
+    "project.blocker": ("warp.image", "depth", "project.coord"),
+    "project.penumbra": ("project.coord", "project.blocker"),
+    "project.shadow": ("warp.image", "depth", "project.coord", "project.blocker", "project.penumbra"),
     "accumulate.shadow": ("project.shadow",),
     "color": ("depth", "accumulate.shadow"),
 }

@@ -9,10 +9,23 @@ from pydantic import Field
 
 from ibr_ref import shadows
 from ibr_ref.oracle.cases.case import Case
-from ibr_ref.oracle.schema.base import ArrayFile, Inputs, Matrix2x3, Model, Stored, Vector2, Vector3, numbers, values
+from ibr_ref.oracle.schema.base import (
+    ArrayFile,
+    Inputs,
+    Matrix2x3,
+    Matrix4,
+    Model,
+    Stored,
+    Vector2,
+    Vector3,
+    numbers,
+    values,
+)
 from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_camera
 from ibr_ref.oracle.schema.document import Document, Schema
 from ibr_ref.scene import AreaLight, Mesh, checks
+from ibr_ref.shadows import parallel
+from ibr_ref.shadows.percentage_closer import on_map
 from ibr_ref.shadows.prepared import depths_of
 from ibr_ref.shadows.render import check_maps
 from ibr_ref.shadows.samples import samples_of, seen_offset
@@ -42,11 +55,15 @@ class ShadowsParams(Model):
     light_samples: Literal[1, 5, 9] | tuple[Vector3, ...]
     """1, 5 or 9, or world positions; `scene.light_samples` lists them all."""
     accumulation: Literal["float", "unorm8"]
-    method: Literal["warp", "direct", "grid"]
+    method: Literal["warp", "direct", "grid", "pcss"]
     grid_size: int = 32
     """n: method = "grid" has n x n maps, from end to end of the widened range."""
     grid_mix: bool = True
     """The mix of the four maps around; otherwise the nearest one."""
+    search_points: int = 32
+    """method = "pcss": points of the light by which blockers are searched, `scene.soft.search`."""
+    filter_points: int = 64
+    """method = "pcss": points of the light by which distances are compared, `scene.soft.filter`."""
 
 
 class MeshFile(Model):
@@ -102,6 +119,23 @@ class MapsFile(Model):
     """interpolation = "projective": of the middle of the caster's box along the light's view axis, [j, i] as the maps."""
 
 
+class SoftFile(Model):
+    """The one map of method = "pcss", and where it is asked."""
+
+    view_from_world: Matrix4
+    """Of the map; the third row times (x, y, z, 1) is minus the distance from the light's plane."""
+    clip_from_view: Matrix4
+    """z in [0, 1]; w is the distance."""
+    near: float
+    """n, the distance of the map's near plane."""
+    far: float
+    """f."""
+    nearest: float
+    """m, the caster's nearest distance."""
+    search: ArrayFile
+    filter: ArrayFile
+
+
 class ShadowsScene(Model):
     """Receivers and a caster that moves along two axes; drawn are the receivers in order, then the caster."""
 
@@ -121,6 +155,8 @@ class ShadowsScene(Model):
     background: Vector3
     maps: MapsFile | None
     """None: method is not "warp", and the maps are rendered."""
+    soft: SoftFile | None = None
+    """None: method is not "pcss"."""
 
 
 class ShadowsCase(Document):
@@ -166,6 +202,22 @@ def _scene(scene: shadows.Scene, params: shadows.Params, maps: Any, inputs: Inpu
         ambient=scene.ambient,
         background=numbers(scene.background),
         maps=_maps(scene, params, maps, inputs),
+        soft=_soft(scene, params, inputs) if params.method == "pcss" else None,
+    )
+
+
+def _soft(scene: shadows.Scene, params: shadows.Params, inputs: Inputs) -> SoftFile:
+    frame, window = parallel.map_of(scene)
+    (near, far), meaning = parallel.planes(window), "(N, 2) points of the light seen at distance 1, in units of the map"
+    search, points = (on_map(frame, window, count) for count in (params.search_points, params.filter_points))
+    return SoftFile(
+        view_from_world=numbers(frame.view_from_world),
+        clip_from_view=numbers(parallel.clip_from_view(window)),
+        near=near,
+        far=far,
+        nearest=window.near,
+        search=inputs.array("soft.search", search, meaning),
+        filter=inputs.array("soft.filter", points, meaning),
     )
 
 

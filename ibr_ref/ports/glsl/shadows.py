@@ -1,7 +1,7 @@
 """Shadows by image warping on OpenGL: the same inputs as `ibr_ref.shadows.render`, in float32 GLSL.
 
 Scene, parameters and prepared maps are those of an exported case, as case_folder.py reads it; nothing of `ibr_ref` is
-imported. Ported are method="warp", "direct" and "grid", masks and depths, both policies, every way to compare, and both
+imported. Ported are all methods, masks and depths, both policies, every way to compare, and both
 ways to accumulate. The passes of a frame:
 
 1. receivers and caster into two attachments: world position and kind; colour and max(0, n . l);
@@ -32,6 +32,7 @@ from ibr_ref.ports.glsl.shadow_maps import (
     column_major,
     create_warped_maps,
 )
+from ibr_ref.ports.glsl.shadow_soft import SoftMap
 from ibr_ref.ports.shadow_scene import offset_in_world, place_in_cell, shares_in_cell, vertices
 
 FAST = {"place": (4, "f4"), "surface": (4, "f1")}
@@ -45,7 +46,7 @@ class Prepared:
     device: gl.Device
     scene: Any
     params: Any
-    source: WarpedMaps | CasterMaps | GridMaps
+    source: WarpedMaps | CasterMaps | GridMaps | SoftMap
     target: gl.Target
     surface: moderngl.VertexArray
     project: moderngl.VertexArray
@@ -115,14 +116,14 @@ class Prepared:
     def _draw_map(self, sample: Any) -> None:
         if isinstance(self.source, CasterMaps):
             self.source.draw(sample.camera, self.scene.offset)
-        elif isinstance(self.source, GridMaps):
+        elif isinstance(self.source, (GridMaps, SoftMap)):
             self.source.draw(sample)
         else:
             cell, fraction = place_in_cell(self.scene.maps.positions, sample.seen_offset)
             self.source.draw(cell, shares_in_cell(self.scene.maps.depths, cell, fraction))
 
     def _set_projection(self, program: moderngl.Program, sample: Any) -> None:
-        camera = sample.camera
+        camera = self.scene.soft if isinstance(self.source, SoftMap) else sample.camera
         program["clip_from_view"].write(column_major(camera.clip_from_view))
         program["view_from_world"].write(column_major(camera.view_from_world))
         for name, value in (("bias", float(self.params.bias)), ("alpha", 1.0 / len(self.scene.light_samples))):
@@ -130,6 +131,8 @@ class Prepared:
                 program[name].value = value
         self.target.textures["place"].use(0)
         self.source.texture.use(1)
+        if isinstance(self.source, SoftMap):
+            self.source.ask(program)
 
     def _draw_picture(self) -> None:
         self.picture.fbo.use()
@@ -145,7 +148,9 @@ class Prepared:
         """Maps and projections per sample, as the specification groups them, and their sum."""
         assert self.coordinates is not None, "prepared without stages"
         width, height = self.picture.fbo.size
-        result = gl.create_target(self.device, width, height, {"result": (4, "f4")})
+        soft = isinstance(self.source, SoftMap)
+        attachments = {"result": (4, "f4"), **({"softness": (4, "f4")} if soft else {})}
+        result = gl.create_target(self.device, width, height, attachments)
         stages: dict[str, list[np.ndarray]] = defaultdict(list)
         for sample in self.scene.light_samples:
             self._draw_map(sample)
@@ -160,6 +165,10 @@ class Prepared:
                     stages[name].append(array)
             stages["project.coord"].append(projected[..., :3])
             stages["project.shadow"].append(projected[..., 3])
+            if soft:
+                softness = result.read("softness").astype(np.float64)
+                stages["project.blocker"].append(softness[..., 0])
+                stages["project.penumbra"].append(softness[..., 1])
         result.release()
         single = len(self.scene.light_samples) == 1
         arrays = {name: each[0] if single else np.stack(each) for name, each in stages.items()}
@@ -222,9 +231,9 @@ class Port:
         buffer = ctx.buffer(vertices(scene).tobytes())
         layout = [(buffer, "3f 3f 3f 1f", "in_position", "in_normal", "in_color", "in_caster")]
         surface = ctx.vertex_array(self._programs.get("surface", "surface"), layout)
-        flags = _flags(params, stages)
-        project = ctx.vertex_array(self._programs.get("screen", "project", *flags), [])
-        coordinates = ctx.vertex_array(self._programs.get("screen", "project", "COORD", *flags), []) if stages else None
+        kind, flags = ("soft", []) if params.method == "pcss" else ("project", _flags(params, stages))
+        project = ctx.vertex_array(self._programs.get("screen", kind, *flags), [])
+        coordinates = ctx.vertex_array(self._programs.get("screen", kind, "COORD", *flags), []) if stages else None
         resolve = ctx.vertex_array(self._programs.get("screen", "resolve"), [])
         vaos = [vao for vao in (surface, project, coordinates, resolve) if vao is not None]
         source = self._source(scene, params, stages, "f4" if stages else texels)
@@ -243,12 +252,18 @@ class Port:
             owned=[*vaos, buffer],
         )
 
-    def _source(self, scene: Any, params: Any, stages: bool, texels: str) -> WarpedMaps | CasterMaps | GridMaps:
+    def _source(
+        self, scene: Any, params: Any, stages: bool, texels: str
+    ) -> WarpedMaps | CasterMaps | GridMaps | SoftMap:
         """Where the map of a sample comes from."""
         if params.method == "warp":
             return create_warped_maps(self.device, self._programs, scene.maps, params, exact=stages, texels=texels)
-        maps = CasterMaps if params.method == "direct" else GridMaps
-        return maps(self.device, self._programs, scene, params)
+        kinds: dict[str, type[CasterMaps | GridMaps | SoftMap]] = {
+            "direct": CasterMaps,
+            "grid": GridMaps,
+            "pcss": SoftMap,
+        }
+        return kinds[params.method](self.device, self._programs, scene, params)
 
 
 def _flags(params: Any, stages: bool) -> list[str]:
@@ -264,5 +279,5 @@ def _flags(params: Any, stages: bool) -> list[str]:
 
 def _check(params: Any) -> None:
     """Refuse what is not ported."""
-    if params.method not in ("warp", "direct", "grid"):
-        raise ValueError(f"method = {params.method!r}: the port allows warp, direct, grid")
+    if params.method not in ("warp", "direct", "grid", "pcss"):
+        raise ValueError(f"method = {params.method!r}: the port allows warp, direct, grid, pcss")

@@ -50,7 +50,7 @@ COMPARED: dict[str, set[str]] = {
 """Parameters of the systems that the papers compare with: no case has them."""
 LATER = {
     "displacement": {"lod_bias", "min_steps", "max_steps", "distance_layers"},
-    "shadows": {"grid_size", "grid_mix"},
+    "shadows": {"grid_size", "grid_mix", "search_points", "filter_points"},
 }
 """Those that cases of before do not name: they have the defaults."""
 

@@ -221,6 +221,14 @@ def many() -> Case:
     return case(scene(), params(method="grid", grid_size=5, light_samples=5, map_samples=2))
 
 
+def penumbra() -> Case:
+    """Percentage-closer soft shadows of a caster that cuts a table."""
+    lamp = light(half_edges=((0.5, 0.0, 0.0), (0.15, 0.4, 0.0)))
+    meshes = [painted(plate(6.0, -1.0), 1), plate(0.6, 0.05), wall()]
+    around = scene(light=lamp, receivers=meshes)
+    return case(around, params(method="pcss", bias=0.4, search_points=12, filter_points=16))
+
+
 CASES: dict[str, Callable[[], Case]] = {
     make.__name__: cache(make)
     for make in (
@@ -243,6 +251,7 @@ CASES: dict[str, Callable[[], Case]] = {
         beyond,
         grazing,
         many,
+        penumbra,
     )
 }
 
@@ -284,6 +293,30 @@ ELSEWHERE = {
     "grid-fractions-of-16": "many",
     "grid-maps-in-bytes": "many",
     "grid-pixel-centres": "many",
+    "soft-search-not-scaled": "penumbra",
+    "soft-search-as-wide-as-the-light": "penumbra",
+    "soft-receiver-for-blocker": "penumbra",
+    "soft-penumbra-not-seen-from-the-light": "penumbra",
+    "soft-penumbra-fixed": "penumbra",
+    "soft-bias-sign": "penumbra",
+    "soft-comparison-reversed": "penumbra",
+    "soft-mean-of-all-samples": "penumbra",
+    "soft-nearest-blocker": "penumbra",
+    "soft-mean-of-window-depths": "penumbra",
+    "soft-empty-texels-block": "penumbra",
+    "soft-distances-of-another-range": "penumbra",
+    "soft-filter-nearest": "penumbra",
+    "soft-filter-of-depths": "penumbra",
+    "soft-points-flipped": "penumbra",
+    "soft-light-halved": "penumbra",
+    "soft-light-doubled": "penumbra",
+    "soft-last-point-left-out": "penumbra",
+    "soft-no-bias-in-the-search": "penumbra",
+    "soft-caster-shadowed": "penumbra",
+    "soft-distances-half-floats": "penumbra",
+    "soft-blocker-half-floats": "penumbra",
+    "soft-penumbra-half-floats": "penumbra",
+    "soft-points-half-floats": "penumbra",
     "project-gl-depth": "deep",
     "project-r-not-divided": "deep",
     "project-r-not-clamped": "far",

@@ -25,6 +25,8 @@ STAGED = {
     "depth-viewport-shifted": BOX,
     "project-t-upwards": BOX,
     "project-bias-sign": "shadows-depths",
+    "grid-n-intervals": "shadows-many",
+    "soft-receiver-for-blocker": "shadows-penumbra",
     "accumulate-over": "shadows-nearest",
     "resolve-half-lambert": BOX,
     "resolve-columns-mirrored": BOX,

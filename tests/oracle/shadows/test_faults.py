@@ -97,6 +97,35 @@ FAULTS: list[tuple[Callable[[Arrays], None], str, str]] = [
 ]
 
 
+def blocker(arrays: Arrays) -> None:
+    arrays["project.blocker"][60, 57] += 1e-3
+
+
+def breadth(arrays: Arrays) -> None:
+    arrays["project.penumbra"][60, 57] += 1e-4
+
+
+def percentage(arrays: Arrays) -> None:
+    arrays["project.shadow"][60, 57] -= 0.02
+
+
+SOFTENED = [(blocker, "project.blocker"), (breadth, "project.penumbra"), (percentage, "project.shadow")]
+
+
+@pytest.mark.parametrize(("fault", "array"), SOFTENED, ids=[fault.__name__ for fault, _ in SOFTENED])
+def test_a_fault_of_a_softened_map_is_found_where_it_is(fault: Callable[[Arrays], None], array: str) -> None:
+    name = "shadows-penumbra"
+    arrays = copied(plain(name))
+    assert arrays["project.blocker"][60, 57] > 0.0
+    fault(arrays)
+    wrong = [j for j in stages(name, arrays, "ieee32") if j.wrong.any()]
+    assert next(j.stage for j in wrong) == "project"
+    assert wrong[0].wrong.sum() == 1
+    assert wrong[0].arrays[wrong[0].blame[60, 57]] == array
+    rows = REFEREE.trace(case(name), PROFILES["ieee32"], arrays, "project", (60, 57))
+    assert array in {row.array for row in rows if row.note == "differs"}
+
+
 @pytest.mark.parametrize(("fault", "stage", "array"), FAULTS, ids=[fault.__name__ for fault, _, _ in FAULTS])
 def test_a_fault_is_found_where_it_is(fault: Callable[[Arrays], None], stage: str, array: str) -> None:
     arrays = copied(plain(SOFT))
@@ -113,7 +142,10 @@ def test_a_fault_is_found_where_it_is(fault: Callable[[Arrays], None], stage: st
     assert any(row.note == "differs" for row in rows), rows
 
 
-@pytest.mark.parametrize("name", [SOFT, DIRECT, "shadows-filtered", "shadows-depths", "shadows-nearest"])
+@pytest.mark.parametrize(
+    "name",
+    [SOFT, DIRECT, "shadows-filtered", "shadows-depths", "shadows-nearest", "shadows-many", "shadows-penumbra"],
+)
 def test_every_element_has_a_trace(name: str) -> None:
     arrays, device, random = plain(name), PROFILES["ieee32"], np.random.default_rng(3)
     for judged in [*stages(name, arrays, "ieee32"), image(name, picture(arrays), "ieee32")]:

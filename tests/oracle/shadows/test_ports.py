@@ -115,6 +115,14 @@ def test_the_nine_maps_are_the_centre_s_whichever_sample_comes_first(device: str
     assert complaints(judge(own, arrays, PROFILES[device])) == []
 
 
+def test_counts_that_are_handed_on_are_quotients() -> None:
+    """The nearest map of a grid as it is: its texels are counts over k^2, divided by a device that is off by 2 ULP."""
+    given = case("shadows-many")
+    near = replace(given, params=replace(given.params, grid_mix=False, map_samples=1))
+    arrays = port_output(near, Port, Variant("near", Policy(loose=2, seed=1), "vulkan"))
+    assert complaints(judge(near, arrays, PROFILES["vulkan"])) == []
+
+
 def test_a_looser_device_forgives_more() -> None:
     arrays = drawn("shadows-box", Policy(subpixel_rounding="down", weight_bits=8))
     assert image("shadows-box", picture(arrays), "ieee32").wrong.any()

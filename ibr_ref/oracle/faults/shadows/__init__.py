@@ -12,12 +12,15 @@ from ibr_ref.oracle.faults.shadows.grid import GRID
 from ibr_ref.oracle.faults.shadows.maps import MAPS
 from ibr_ref.oracle.faults.shadows.project import PROJECT
 from ibr_ref.oracle.faults.shadows.resolve import RESOLVE
+from ibr_ref.oracle.faults.shadows.soft import SOFT
 from ibr_ref.oracle.faults.shadows.warp import WARP
 from ibr_ref.oracle.programs.shadows import Port
 from ibr_ref.oracle.programs.shadows.variants import VARIANTS
 
 MUTANTS: tuple[Mutant, ...] = tuple(
-    mutant for bugs in (MAPS, CONTROLS, WARP, GRID, DEPTH, PROJECT, ACCUMULATE, RESOLVE) for mutant in bugs.mutants
+    mutant
+    for bugs in (MAPS, CONTROLS, WARP, GRID, DEPTH, PROJECT, SOFT, ACCUMULATE, RESOLVE)
+    for mutant in bugs.mutants
 )
 """In the order of the stages."""
 

@@ -14,10 +14,13 @@ from ibr_ref.oracle.programs.shadows.port import Port
 from ibr_ref.oracle.programs.shadows.raster import Fragments, Raster
 from ibr_ref.oracle.programs.shadows.sampler import Sampler
 
-PROJECT = Bugs("project")
+PROJECT = Bugs("project", only=("warp", "direct", "grid"))
+
+ALL = ("warp", "direct", "grid", "pcss")
+"""Also where one map is softened."""
 
 
-@PROJECT.add("project-t-upwards")
+@PROJECT.add("project-t-upwards", only=ALL)
 class _Upwards(Port):
     """T grows upwards."""
 
@@ -37,7 +40,7 @@ class _GLDepth(Port):
         return matrix
 
 
-@PROJECT.add("project-half-texel-in-matrix")
+@PROJECT.add("project-half-texel-in-matrix", only=ALL)
 class _HalfInMatrix(Port):
     """The bias matrix adds half a texel."""
 
@@ -55,7 +58,7 @@ class _DepthNotDivided(Port):
         return [*super().divided(q)[:2], q[2]]
 
 
-@PROJECT.add("project-world-not-perspective")
+@PROJECT.add("project-world-not-perspective", only=ALL)
 class _NotPerspective(Port):
     """World positions are interpolated linearly in the window."""
 
@@ -135,7 +138,7 @@ class _NoHalf(Sampler):
         return self.do.multiply(u, size)
 
 
-@PROJECT.add("project-half-a-texel")
+@PROJECT.add("project-half-a-texel", only=ALL)
 class _HalfTexel(Port):
     """Fetches from texel s S, not s S - 0.5."""
 
@@ -159,7 +162,7 @@ class _Rounding(Sampler):
         return np.rint(self.do.multiply(u, size)).astype(np.int64)
 
 
-@PROJECT.add("project-texel-rounded", small=True)
+@PROJECT.add("project-texel-rounded", only=ALL, small=True)
 class _TexelRounded(Port):
     """The nearest texel is round(s S), not floor."""
 

@@ -18,6 +18,7 @@ from ibr_ref.oracle.programs.shadows.grid import Grid
 from ibr_ref.oracle.programs.shadows.lights import Lights
 from ibr_ref.oracle.programs.shadows.maps import Maps
 from ibr_ref.oracle.programs.shadows.port import Port
+from ibr_ref.oracle.programs.shadows.soft import SOFT
 from ibr_ref.oracle.programs.shadows.surface import Picture
 from ibr_ref.oracle.programs.shadows.warp import Warp
 from ibr_ref.oracle.referees.outcomes import stored as stored_number
@@ -34,8 +35,14 @@ HANDED_OVER = ("maps.positions", "maps.image")
 SEEN = {*vars(Picture), "surface_raster", "caster_vertices", "clip_coordinates", "applied", "by_product", "product"}
 SEEN |= {"light_centre", "cosine", "toward_eye", "toward_light", "turned", "lambert"}
 """What of a program says what the camera sees, and in which light."""
-MAPPED = {*vars(Maps), *vars(Warp), *vars(Grid), *vars(Lights)} - {"shadow_sampler", "surface_raster", "on"}
+MAPPED = {*vars(Maps), *vars(Warp), *vars(Grid), *vars(Lights), "soft_map", "soft_clip"} - {
+    "shadow_sampler",
+    "surface_raster",
+    "on",
+}
 """What of a program says what is projected."""
+RENDERED = ("direct_map", "soft_map", "caster_map", "coverage", "share", "depths")
+"""What makes a map that is rendered alone of what is drawn."""
 DRAWN = {*vars(Maps), *vars(Lights), "map_raster", "intervals", "grid_ends", "grid_position"}
 """What says what the maps of a grid are, whatever is made of them."""
 Spot = tuple[Place, Place]
@@ -75,8 +82,8 @@ class Inputs:
 
     @property
     def direct(self) -> bool:
-        """Whether maps are rendered for every sample."""
-        return bool(self.case.params.method == "direct")
+        """Whether a map is rendered alone for every sample, or for the whole light."""
+        return bool(self.case.params.method in ("direct", SOFT))
 
     @property
     def warps(self) -> bool:
@@ -297,9 +304,9 @@ class Inputs:
             texels = np.where(bad, self.reference("warp.image")[sample], own[sample])
             # A map that is rendered was cleared to 1; a warped one holds mixes, rounded to 1 or not.
             return Map.of(stored(texels, self.device, exact(1.0, self.device) if self.direct else None), bad)
-        if self.direct and self.model.program.right("direct_map", "caster_map", "coverage", "share", "depths"):
+        if self.direct and self.model.program.right(*RENDERED):
             program = self.model.program
-            clip, raster = program.direct_clip(program.places[sample]), program.direct_raster(self.model.machine)
+            clip, raster = program.sample_clip(program.places[sample]), program.direct_raster(self.model.machine)
             return rendered(self.model, raster, clip, self.reference("warp.image")[sample])
         return Map.of(self.model.bounded(self.made_map(sample)))
 

@@ -100,9 +100,15 @@ def hull(model: Model, raster: Raster, clip: Sequence[Any]) -> Bounded:
     found, size = drawn(model, raster, clip), int(model.program.params.map_size)
     if model.case.params.content == "mask":
         low, high = (counts(each, int(model.program.params.map_samples)) for each in found.covered)
-    else:
-        low, high = (end.reshape(size, size) for end in _hull(found, size * size))
+        share = centered(low, high, model.device)
+        return Bounded(share.value, share.error + quotient_of_counts(model.device) * high, model.device)
+    low, high = (end.reshape(size, size) for end in _hull(found, size * size))
     return centered(low, high, model.device)
+
+
+def quotient_of_counts(device: Device) -> float:
+    """Relative error of a count over k^2, as a quotient or a product with a rounded inverse."""
+    return (device.quotient + device.operation) * UNIT
 
 
 def _depths(found: Drawn, reference: Floats, device: Device) -> Map:
@@ -143,8 +149,7 @@ def allows(model: Model, raster: Raster, clip: Sequence[Any], image: Floats) -> 
         low, high = (counts(each, k) for each in found.covered)
         with np.errstate(invalid="ignore"):
             share = np.rint(image * (k * k)) / (k * k)
-            # A count over k^2, as a quotient or a product with a rounded inverse.
-            whole = np.abs(image - share) <= (device.quotient + device.operation) * UNIT
+            whole = np.abs(image - share) <= quotient_of_counts(device)
             return whole & (low <= share) & (share <= high), low < high, np.zeros(image.shape)
     assert found.depth is not None
     assert found.winners is not None

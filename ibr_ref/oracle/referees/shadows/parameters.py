@@ -10,6 +10,7 @@ import numpy as np
 
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.judgement import Parameter
+from ibr_ref.oracle.programs.shadows.soft import SOFT
 from ibr_ref.oracle.referees.moved import components, with_eye, with_light, with_params, with_scene
 from ibr_ref.shadows.prepared import source_of
 
@@ -22,10 +23,9 @@ def parameters(case: Case) -> list[Parameter]:
     """Those of the light, the object's place, the bias, the background and the eye."""
     scene, params = case.scene, case.params
     light = scene.light
-    found = [
-        _of("ambient", scene.ambient, lambda value: with_scene(case, ambient=value)),
-        _of("light.vertical_fov", light.vertical_fov, lambda value: _light(case, vertical_fov=value)),
-    ]
+    found = [_of("ambient", scene.ambient, lambda value: with_scene(case, ambient=value))]
+    if params.method != SOFT:  # whose map is not the light's own
+        found.append(_of("light.vertical_fov", light.vertical_fov, lambda value: _light(case, vertical_fov=value)))
     found += _components("light.position", light.position, lambda place: _light(case, position=place))
     if _spread(case):
         edges = np.asarray(light.half_edges)
@@ -40,8 +40,9 @@ def parameters(case: Case) -> list[Parameter]:
 
 
 def _spread(case: Case) -> bool:
-    """Whether the light's samples follow its size."""
-    return not isinstance(case.params.light_samples, np.ndarray) and int(case.params.light_samples) > 1
+    """Whether the shadow follows the light's size."""
+    given = case.params.light_samples
+    return bool(case.params.method == SOFT or (not isinstance(given, np.ndarray) and int(given) > 1))
 
 
 def _of(name: str, value: float, moved: Callable[[float], Case]) -> Parameter:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -78,24 +78,43 @@ def handed(found: Floats, legal: Coordinate) -> Coordinate:
 
 def shadow(model: Model, texels: Map, at: Coordinate, caster: Bools) -> Shadow:
     """What the map says of fragments; caster (n,): they are the caster's own."""
-    count, axes = len(caster), [at.s, at.t, at.r, at.w]
+    axes = [at.s, at.t, at.r, at.w]
     exact = np.asarray(model.exact.shadowed(texels.firm.value, [axis.value for axis in axes], caster), np.float64)
-    every = np.arange(count)
-    runs = [_followed(model, texels.firm, axes, caster, every)]
+    found = outcomes_of(
+        model, texels, at, lambda program, image, places, rows: program.shadowed(image, places, caster[rows])
+    )
+    fragment, outcome, lost = found
+    spoiled = np.zeros(len(caster), np.bool_)
+    spoiled[lost] = True
+    return _ordered(fragment, outcome, exact, spoiled)
+
+
+def outcomes_of(
+    model: Model, texels: Map, at: Coordinate, steps: Callable[[Any, Any, Any, Ints], Any]
+) -> tuple[Ints, Bounded, Ints]:
+    """Fragments and outcomes of what a program makes of the map, and fragments of which anything is legal.
+
+    steps(program, image, places, rows) makes one number of each of the fragments `rows`.
+    """
+    axes, every = [at.s, at.t, at.r, at.w], np.arange(len(at.spoiled))
+    runs = [_followed(model, texels.firm, axes, every, steps)]
     open_texels = (texels.low < texels.firm.low) | (texels.high > texels.firm.high)
+    soft = model.program.soft  # whose regions are anywhere around
     if open_texels.any():
-        near = np.flatnonzero(reads(open_texels, at.s, at.t))
-        runs.append(_followed(model, centered(texels.low, texels.high, at.s.device), axes, caster, near))
+        near = every if soft else np.flatnonzero(reads(open_texels, at.s, at.t))
+        runs.append(_followed(model, centered(texels.low, texels.high, at.s.device), axes, near, steps))
     fragment = np.concatenate([run[0] for run in runs])
     found = [model.bounded(run[1]) for run in runs]
     value, error = np.concatenate([x.value for x in found]), np.concatenate([x.error for x in found])
-    spoiled = at.spoiled | (reads(texels.spoiled, at.s, at.t) if texels.spoiled.any() else False)
-    spoiled[np.concatenate([run[2] for run in runs])] = True
-    return _ordered(fragment, Bounded(value, error, at.s.device), exact, spoiled)
+    lost = np.array(at.spoiled)
+    if texels.spoiled.any():
+        lost |= True if soft else reads(texels.spoiled, at.s, at.t)
+    lost[np.concatenate([run[2] for run in runs])] = True
+    return fragment, Bounded(value, error, at.s.device), np.flatnonzero(lost)
 
 
 def _followed(
-    model: Model, image: Bounded, axes: Sequence[Bounded], caster: Bools, among: Ints
+    model: Model, image: Bounded, axes: Sequence[Bounded], among: Ints, steps: Callable[[Any, Any, Any, Ints], Any]
 ) -> tuple[Ints, Number, Ints]:
     """Fragments and outcomes, and the fragments that have too many."""
     machine, program = model.machine, model.program
@@ -104,11 +123,11 @@ def _followed(
     def run(origin: Ints) -> dict[str, Any]:
         lane, rows = np.arange(len(origin)), among[origin]
         at = [model.number(axis[rows], lane) for axis in axes]
-        return {"shadow": machine.of(program.shadowed(texels, at, caster[rows]))}
+        return {"found": machine.of(steps(program, texels, at, rows))}
 
     with np.errstate(all="ignore"):
         found, lost = machine.follow(run, len(among))
-    return among[found["origin"]], found["shadow"], among[lost]
+    return among[found["origin"]], found["found"], among[lost]
 
 
 def _ordered(fragment: Ints, outcome: Bounded, exact: Floats, spoiled: Bools) -> Shadow:

@@ -13,7 +13,7 @@ from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.outcomes import stored
 from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.shadows import maps, places
-from ibr_ref.oracle.referees.shadows.inputs import Inputs, Spot
+from ibr_ref.oracle.referees.shadows.inputs import RENDERED, Inputs, Spot
 from ibr_ref.oracle.referees.shadows.judging import judgement
 from ibr_ref.oracle.referees.shadows.model import stacked
 
@@ -157,13 +157,13 @@ def warped(given: Inputs) -> Judgement | None:
     if found is None:
         return None
     program, model, shape = given.model.program, given.model, np.shape(given.handed["warp.image"])
-    if not given.direct or not program.right("direct_map", "caster_map", "coverage", "share", "depths"):
+    if not given.direct or not program.right(*RENDERED):
         legal = [model.bounded(program.sample_map(place)) for place in program.places]
         right = np.stack([bound.allows(image) for bound, image in zip(legal, found, strict=True)]).reshape(shape)
         width = np.stack([2.0 * bound.error for bound in legal]).reshape(shape)
         return judgement("warp", "texel", ["warp.image"], [right], width, undecided=width > maps.VISIBLE)
     raster = program.direct_raster(model.machine)
-    clips = [program.direct_clip(place) for place in program.places]
+    clips = [program.sample_clip(place) for place in program.places]
     results = [maps.allows(model, raster, clip, image) for clip, image in zip(clips, found, strict=True)]
     right, undecided, width = (np.stack(part).reshape(shape) for part in zip(*results, strict=True))
     return judgement("warp", "texel", ["warp.image"], [right], width, undecided=undecided)

@@ -12,7 +12,7 @@ from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.bounded import converted, stored
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.reads import fed
-from ibr_ref.oracle.referees.shadows import resolve
+from ibr_ref.oracle.referees.shadows import replay_soft, resolve
 from ibr_ref.oracle.referees.shadows.accumulate import accumulated, in_bytes
 from ibr_ref.oracle.referees.shadows.branches import Branches, branches, in_shadow, spread
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
@@ -54,6 +54,8 @@ def _agreeing(given: Inputs) -> tuple[Bools, Bools]:
 
 def projected(given: Inputs) -> Judgement | None:
     """Coordinates and shadows of all samples together, for each fragment that a pixel may show."""
+    if given.model.program.soft:
+        return replay_soft.projected(given, *_agreeing(given))
     coords, found = given.own("project.coord"), given.own("project.shadow")
     names = [n for n, a in (("project.coord", coords), ("project.shadow", found)) if a is not None]
     if not names:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.referees.shadows import replay_maps, replay_picture
+from ibr_ref.oracle.referees.shadows import replay_maps, replay_picture, replay_soft
 from ibr_ref.oracle.referees.shadows.inputs import HANDED_OVER, Inputs
 
 Judge = Callable[[Inputs], Judgement | None]
@@ -21,7 +21,7 @@ PARTS: dict[str, tuple[str, tuple[str, ...], Judge]] = {
     "warp.grid": ("warp", ("warp.grid",), replay_maps.grids),
     "warp.image": ("warp", ("warp.image",), replay_maps.warped),
     "depth": ("depth", ("depth",), replay_picture.depth),
-    "project": ("project", ("project.coord", "project.shadow"), replay_picture.projected),
+    "project": ("project", replay_soft.NAMES, replay_picture.projected),
     "accumulate": ("accumulate", ("accumulate.shadow",), replay_picture.sums),
     "resolve": ("resolve", ("color",), replay_picture.colors),
 }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Floats
 from ibr_ref.oracle.accept.bounded import Bounded
@@ -15,5 +17,6 @@ def gamma(device: Device, operations: float, quotients: float = 0.0) -> float:
 
 
 def centered(low: Floats, high: Floats, device: Device) -> Bounded:
-    """Everything between two numbers."""
-    return Bounded((low + high) / 2.0, (high - low) / 2.0, device)
+    """Everything between two numbers, both included whatever is rounded here."""
+    middle = (low + high) / 2.0
+    return Bounded(middle, np.maximum(high - middle, middle - low), device)

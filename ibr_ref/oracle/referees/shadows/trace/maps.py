@@ -82,7 +82,7 @@ def map_texel(given: Inputs, array: str, index: tuple[int, ...]) -> list[TraceRo
         raster, clip = program.map_raster(model.machine), program.caster_clip(at, program.light_view(program.centre))
     else:
         place = program.places[index[0] if given.count > 1 else 0]
-        at, raster, clip = program.offset, program.direct_raster(model.machine), program.direct_clip(place)
+        at, raster, clip = program.offset, program.direct_raster(model.machine), program.sample_clip(place)
     size = int(case.params.map_size) * (1 if depth else k)
     found = maps.drawn(model, raster, clip)
     samples = 1 if depth else k

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ibr_ref.oracle.accept.bounded import Bounded, converted, exact, stored
 from ibr_ref.oracle.judgement import Handed, TraceRow
 from ibr_ref.oracle.referees.rows import DIFFERS, EITHER, color, number, text, told
-from ibr_ref.oracle.referees.shadows import resolve
+from ibr_ref.oracle.referees.shadows import replay_soft, resolve
 from ibr_ref.oracle.referees.shadows.accumulate import accumulated, in_bytes
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.project import Coordinate, Shadow, coordinate, handed, shadow
@@ -107,7 +107,8 @@ def _shaded(given: Inputs, fragment: int, arrays: Handed, index: Index) -> list[
             place = handed(found[None], place)
         legal = shadow(given.model, given.map(i), place, caster)
         port = None if own is None else float(own[i][index])
-        rows += [*_read(given, i, place, name), _told_shadow(name, legal, port, sample)]
+        read = _softened(given, fragment, arrays, index) if given.model.program.soft else _read(given, i, place, name)
+        rows += [*read, _told_shadow(name, legal, port, sample)]
         fed = "project.shadow" in given.handed and port is not None and bool(np.isfinite(port))
         shadows.append(stored(np.array([port]), given.device) if fed else legal.first)
     total_row, total = _sum(given, shadows, arrays, index)
@@ -141,6 +142,19 @@ def _own(given: Inputs, arrays: Handed, name: str) -> Any:
         return None
     array = np.asarray(arrays[name]).astype(np.float64)
     return array[None] if given.count == 1 else array
+
+
+def _softened(given: Inputs, fragment: int, arrays: Handed, index: Index) -> list[TraceRow]:
+    """Blocker and penumbra, each from the port's own before it."""
+    rows = []
+    for name, step in (("project.blocker", "mean distance of blockers"), ("project.penumbra", "penumbra, 1/b - 1/r")):
+        own = _own(given, arrays, name)
+        port = None if own is None else float(own[0][index])
+        which, outcome, _ = replay_soft.outcomes(given, name)
+        mine = [int(k) for k in np.flatnonzero(which == fragment)]
+        agreeing = [k for k in mine if port is not None and bool(outcome[k].allows(port))]
+        rows.append(number(step, outcome[(agreeing or mine)[0]], port, array=name))
+    return rows
 
 
 def _read(given: Inputs, sample: int, at: Coordinate, name: str) -> list[TraceRow]:
