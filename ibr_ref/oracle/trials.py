@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,10 +30,8 @@ LIMITS: dict[str, Any] = {
     "clip_border": "allowed",
     "setup": "whole",
     "unorm_rounding": "either",
-    **FREEDOMS,
 }
-"""What some device does of all that can be declared, the coarsest in use: a port may say too little of its own. Those that
-leave the most open, and take the longest, come last."""
+"""What some device does of all else that can be declared: a port may say too little of its own."""
 
 FEW = 24
 """Wrong pixels that are looked at before all."""
@@ -131,7 +129,7 @@ def _refuted(case: Case, handed: Handed, failed: Trial, more: Mapping[str, Any])
 def needed(case: Case, handed: Handed, failed: Trial, *, limits: bool = False) -> dict[str, Any]:
     """What a device would need beside its numbers for the first wrong judgement of a trial to be right; nothing: no such.
 
-    limits: not only `FREEDOMS` are tried, but all that it has less of than others.
+    limits: not only `FREEDOMS` are tried, but also what else it has less of than others.
     """
     wrong = next(i for i, j in enumerate(failed.judgements) if j.wrong.any())
 
@@ -143,11 +141,15 @@ def needed(case: Case, handed: Handed, failed: Trial, *, limits: bool = False) -
             return False
         return right(judge(case, handed, _with(failed.device, more), to_first_wrong=True))
 
-    more = {
-        key: value for key, value in (LIMITS if limits else FREEDOMS).items() if _coarser(failed.device, key, value)
-    }
-    if not more or not explains(more):
-        return {}
+    for granted in (FREEDOMS, LIMITS) if limits else (FREEDOMS,):
+        more = {key: value for key, value in granted.items() if _coarser(failed.device, key, value)}
+        if more and explains(more):
+            return _fewest(more, explains)
+    return {}
+
+
+def _fewest(more: dict[str, Any], explains: Callable[[Mapping[str, Any]], bool]) -> dict[str, Any]:
+    """One of some numbers that explain something together, or as few as need be."""
     for key, value in more.items() if len(more) > 1 else ():
         if explains({key: value}):
             return {key: value}
