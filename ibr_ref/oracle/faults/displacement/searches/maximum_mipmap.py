@@ -80,6 +80,8 @@ class _OneDirection(MaximumMipmap):
 class _FewNodes(MaximumMipmap):
     """The loop ends after 8 nodes, before the slower rays have met the surface."""
 
+    counts_nodes = True
+
     def most_nodes(self) -> int:
         return 8
 

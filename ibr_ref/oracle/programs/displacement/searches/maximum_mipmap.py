@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -127,6 +127,9 @@ class Ends:
 class MaximumMipmap(Leaf, Descent, search="maximum_mipmap"):
     """Down the quadtree where a node reaches up to the ray, on and up where it does not."""
 
+    counts_nodes: ClassVar[bool] = False
+    """Whether it matters after how many nodes a state is reached."""
+
     def most_steps(self) -> int:
         """Nothing is added up."""
         return 0
@@ -158,6 +161,8 @@ class MaximumMipmap(Leaf, Descent, search="maximum_mipmap"):
         """Step by step what states look at, and the ends that are found there."""
         states, explored = self.set_out(walk), self.do.explored()
         for _ in range(self.most_nodes()):
+            if self.counts_nodes:
+                explored = self.do.explored()
             rows, depth = explored.fresh(states.keys, states.depth)
             states = states.some(rows)
             states = states.at(depth, states.level)
