@@ -14,11 +14,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.array_types import Floats
 from ibr_ref.pipeline.transform import transformed
-from ibr_ref.scene import checks
-from ibr_ref.scene.vectors import cross, dot, unit
-from ibr_ref.shadows.inputs import Scene
 from ibr_ref.shadows.maps import View
-from ibr_ref.shadows.vertex import place
 
 _ROOM = 1e-3
 """Between caster and clipping planes, as a share of the distance."""
@@ -45,43 +41,6 @@ class Window(NamedTuple):
     near: float
     far: float
     """The caster's nearest and farthest distance."""
-
-
-def frame_of(scene: Scene, towards: Floats) -> Frame:
-    """The frame of the light, whose plane is that of the axes; h > 0 on the side of the point `towards` (3,)."""
-    centre, half_edges = scene.light.arrays
-    right, normal = unit(scene.axes[0]), unit(cross(*scene.axes))
-    backwards = -normal if dot(normal, towards - centre) > 0.0 else normal
-    rows = np.stack([right, cross(backwards, right), backwards])
-    view = np.eye(4)
-    view[:3, :3], view[:3, 3] = rows, [-dot(row, centre) for row in rows]
-    return Frame(view, np.array([[dot(row, edge) for row in rows[:2]] for edge in half_edges]))
-
-
-def before_light(scene: Scene, caster: Floats) -> tuple[Frame, Floats, float]:
-    """The light's frame, the caster's corners (U, 3) of its vertices in the world (V, 3), and the nearest one's distance.
-
-    Raises ValueError for a caster that is not wholly on one side of the light's plane.
-    """
-    drawn = caster[np.unique(scene.caster.triangles)]
-    frame = frame_of(scene, drawn.mean(axis=0))
-    nearest = float(distances(frame, drawn).min())
-    if not nearest > 0.0:
-        raise checks.reject(
-            "light.position",
-            scene.light.arrays[0].tolist(),
-            "a light with the whole caster on one side of its plane, that of offset_axes",
-        )
-    return frame, drawn, nearest
-
-
-def map_of(scene: Scene) -> tuple[Frame, Window]:
-    """The light's frame, and a window around the caster and its penumbra as far as the receivers reach."""
-    caster = place(np.asarray(scene.caster.vertices), scene.axes, np.asarray(scene.offset))
-    frame, drawn, nearest = before_light(scene, caster)
-    corners = [np.asarray(mesh.vertices)[np.unique(mesh.triangles)] for mesh in scene.receivers]
-    farthest = max(float(distances(frame, each).max()) for each in corners)
-    return frame, window_around(frame, drawn, max(farthest, nearest))
 
 
 def distances(frame: Frame, points: Floats) -> Floats:

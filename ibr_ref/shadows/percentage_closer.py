@@ -23,12 +23,9 @@ from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.sampling import footprint, lerp, nearest_index
-from ibr_ref.shadows import maps, parallel
-from ibr_ref.shadows.inputs import Params, Scene
 from ibr_ref.shadows.lattice import on_parallelogram
 from ibr_ref.shadows.parallel import Frame, Window
 from ibr_ref.shadows.project import edge_distance
-from ibr_ref.shadows.vertex import place
 
 
 class Filter(NamedTuple):
@@ -66,14 +63,6 @@ def on_map(frame: Frame, window: Window, count: int) -> Floats:
     points = on_parallelogram(np.zeros(2), frame.half_edges, count)
     shares: Floats = points / (window.high - window.low) * np.array([1.0, -1.0])
     return shares
-
-
-def depth_map(scene: Scene, params: Params) -> Floats:
-    """(S, S) window depth of the caster in the map that is parallel to the light; 1 where it is not."""
-    frame, window = parallel.map_of(scene)
-    caster = place(np.asarray(scene.caster.vertices), scene.axes, np.asarray(scene.offset))
-    view = parallel.view_of_caster(frame, window, caster, np.asarray(scene.caster.triangles))
-    return maps.depth(view, np.zeros(2), params.map_size)
 
 
 @device
@@ -159,22 +148,14 @@ def _soften(triangle, varyings, view, window, texels, size, wanted, result):
 
 
 def soften(
-    triangle: NDArray[np.int32],
-    varyings: Floats,
-    caster: int,
-    scene: Scene,
-    params: Params,
-    depths: Floats,
+    triangle: NDArray[np.int32], varyings: Floats, frame: Frame, window: Window, distances: Floats, wanted: Filter
 ) -> Softened:
-    """The shadow of what the camera sees, from a map (S, S) of window depths.
+    """The shadow of what the camera sees, from a map of the caster's distances (S, S), infinite where it is not.
 
-    triangle (H, W), varyings (H, W, 3 or more): those of the `Surface`; triangles from index `caster` on are lit.
+    triangle (H, W), varyings (H, W, 3 or more): those of the `Surface`.
     """
     height, width = triangle.shape
-    frame, window = parallel.map_of(scene)
-    search, points = (on_map(frame, window, count) for count in (params.search_points, params.filter_points))
-    wanted = Filter(search, points, float(params.bias), caster)
     result = Softened(*memory.arrays([(np.float64, (height, width, 3)), *[(np.float64, (height, width))] * 5]))
-    distances = parallel.to_distance(depths, window).reshape(-1)
-    _soften(triangle, varyings, frame.view_from_world, window, distances, float(len(depths)), wanted, result)
+    size, view = float(len(distances)), frame.view_from_world
+    _soften(triangle, varyings, view, window, distances.reshape(-1), size, wanted, result)
     return result

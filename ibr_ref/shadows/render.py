@@ -15,8 +15,9 @@ from ibr_ref.shadows import grid
 from ibr_ref.shadows.ensemble import Ensemble
 from ibr_ref.shadows.grid import MapGrid
 from ibr_ref.shadows.inputs import Params, Scene
+from ibr_ref.shadows.light_map import depth_map, softened
 from ibr_ref.shadows.maps import values
-from ibr_ref.shadows.percentage_closer import Softened, depth_map, soften
+from ibr_ref.shadows.percentage_closer import Softened
 from ibr_ref.shadows.prepared import Maps, check_unfolded, depths_of, prepare, source_of, texels_at, view_of
 from ibr_ref.shadows.project import DEPTH, DEPTH_PCF, MASK, Lookup, Projected, project
 from ibr_ref.shadows.resolve import accumulate, one_light, resolve
@@ -214,7 +215,7 @@ def _projector(scene: Scene, params: Params, keep: bool) -> Projects:
 
 def _softener(scene: Scene, params: Params) -> Projects:
     first = caster_from(scene)
-    return lambda _, image, surface: soften(surface.triangle, surface.varyings, first, scene, params, image)
+    return lambda _, image, surface: softened(scene, params, first, image, surface)
 
 
 def projected_from(light: AreaLight, sample: Sample, image: Floats, surface: Surface, lookup: Lookup) -> Projected:

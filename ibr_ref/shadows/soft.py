@@ -23,6 +23,7 @@ from ibr_ref.scene import checks
 from ibr_ref.shadows import convolution, maps, parallel
 from ibr_ref.shadows.inputs import FINEST_MAP, LARGEST_MAP, Params, Scene
 from ibr_ref.shadows.lattice import on_parallelogram
+from ibr_ref.shadows.light_map import before_light
 from ibr_ref.shadows.maps import MOST_SAMPLES
 from ibr_ref.shadows.render import caster_from, surface_of
 from ibr_ref.shadows.resolve import one_light, resolve
@@ -107,7 +108,7 @@ def _convolved(scene: Scene, params: SoftParams, surface: Surface, caster: Float
 
 def _parallel(scene: Scene, surface: Surface, caster: Floats) -> tuple[parallel.Frame, parallel.Window, Floats]:
     """The light's frame, a window around the caster, and the distances of all that is seen of the receivers."""
-    frame, drawn, nearest = parallel.before_light(scene, caster)
+    frame, drawn, nearest = before_light(scene, caster)
     seen = (surface.triangle >= 0) & (surface.triangle < caster_from(scene))
     receivers = parallel.distances(frame, surface.varyings[seen][:, :3])
     farthest = float(receivers.max()) if len(receivers) else 0.0

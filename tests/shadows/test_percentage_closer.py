@@ -11,7 +11,8 @@ import pytest
 from ibr_ref.io import Frame
 from ibr_ref.shadows import Params, Scene, prepare, render
 from ibr_ref.shadows.lattice import lattice
-from ibr_ref.shadows.parallel import frame_of, map_of, to_distance, window_around
+from ibr_ref.shadows.light_map import frame_of, map_of
+from ibr_ref.shadows.parallel import to_distance, window_around
 from ibr_ref.shadows.render import surface_of
 from ibr_ref.shadows.vertex import place
 from tests.shadows.planes import dart, soft_shadow_by, tilted_scene

@@ -25,6 +25,7 @@ from ibr_ref.oracle.schema.camera import CameraFile, build_camera, describe_came
 from ibr_ref.oracle.schema.document import Document, Schema
 from ibr_ref.scene import AreaLight, Mesh, checks
 from ibr_ref.shadows import parallel
+from ibr_ref.shadows.light_map import map_of
 from ibr_ref.shadows.percentage_closer import on_map
 from ibr_ref.shadows.prepared import depths_of
 from ibr_ref.shadows.render import check_maps
@@ -207,7 +208,7 @@ def _scene(scene: shadows.Scene, params: shadows.Params, maps: Any, inputs: Inpu
 
 
 def _soft(scene: shadows.Scene, params: shadows.Params, inputs: Inputs) -> SoftFile:
-    frame, window = parallel.map_of(scene)
+    frame, window = map_of(scene)
     (near, far), meaning = parallel.planes(window), "(N, 2) points of the light seen at distance 1, in units of the map"
     search, points = (on_map(frame, window, count) for count in (params.search_points, params.filter_points))
     return SoftFile(

@@ -14,6 +14,7 @@ from ibr_ref.oracle.programs.shadows.maps import Maps
 from ibr_ref.oracle.programs.shadows.project import Project
 from ibr_ref.oracle.programs.shadows.sampler import Sampler
 from ibr_ref.shadows import parallel
+from ibr_ref.shadows.light_map import map_of
 from ibr_ref.shadows.percentage_closer import on_map
 
 SOFT = "pcss"
@@ -31,7 +32,7 @@ class Soft(Maps, Project):
         """On another arithmetic: a device's, or bounds of what devices make of it."""
         super().on(do)
         if self.soft:
-            frame, window = parallel.map_of(self.scene)
+            frame, window = map_of(self.scene)
             self.soft_view, self.light_projection = frame.view_from_world, parallel.clip_from_view(window)
             self.planes, self.nearest = parallel.planes(window), window.near
             counts = self.params.search_points, self.params.filter_points
