@@ -104,6 +104,15 @@ class _Shadows(_Change, shadows.Port):
         coord, shadow = super().projected(surface, place, image)
         return coord, self._changed("project.shadow", shadow)
 
+    def blocker(self, image: Any, at: Any) -> Any:
+        return self._changed("project.blocker", super().blocker(image, at))
+
+    def penumbra(self, blocker: Any, r: Any) -> Any:
+        return self._changed("project.penumbra", super().penumbra(blocker, r))
+
+    def search_scale(self, r: Any) -> Any:
+        return super().penumbra(self.do.number(self.nearest), r)
+
     def accumulated(self, shadows_: Any) -> Any:
         return self._changed("accumulate.shadow", super().accumulated(shadows_))
 

@@ -21,10 +21,11 @@ from ibr_ref.oracle.trials import judge
 from tests.oracle.tampered import Arrays, tampered
 
 CASES = {
-    "displacement": "displacement-tiles",
-    "splatting": "splatting-lamp",
-    "shadows": "shadows-pace",
+    "displacement": ["displacement-tiles"],
+    "splatting": ["splatting-lamp"],
+    "shadows": ["shadows-pace", "shadows-penumbra"],
 }
+"""Of each method, those that together have all of its arrays; an array is changed in the first that has it."""
 
 
 def _moved(by: float) -> Callable[[Any], Any]:
@@ -94,6 +95,8 @@ WRONG: dict[str, Callable[[Any], Any]] = {
     "warp.grid": _inner,
     "warp.image": lambda image: 0.5 * image,
     "project.coord": lambda coord: coord * np.array([0.9, 1.0, 1.0]),
+    "project.blocker": lambda blocker: 0.9 * blocker,
+    "project.penumbra": lambda scale: 0.8 * scale,
     "project.shadow": lambda shadow: 0.5 * shadow,
     "accumulate.shadow": lambda shadow: 0.5 * shadow,
 }
@@ -108,42 +111,48 @@ PAIRS = [(m, n) for m in READ for n in READ[m] if n not in NO_CHANGE]
 
 
 @cache
-def case(method: str) -> Case:
-    return build(CASES[method])
+def case(name: str) -> Case:
+    return build(name)
 
 
 @cache
-def plain(method: str) -> Arrays:
-    return tampered(case(method), "", lambda array: array)
+def plain(name: str) -> Arrays:
+    return tampered(case(name), "", lambda array: array)
 
 
-def blamed(method: str, arrays: Arrays) -> dict[str, int]:
+def case_with(method: str, array: str) -> str:
+    """The name of the first case that has it."""
+    return next(name for name in CASES[method] if array in plain(name))
+
+
+def blamed(name: str, arrays: Arrays) -> dict[str, int]:
     """How many elements, by the array that is wrong there; of the stages."""
     found: dict[str, int] = {}
-    for j in judge(case(method), arrays, PROFILES["ieee32"]):
+    for j in judge(case(name), arrays, PROFILES["ieee32"]):
         if j.stage != "image":
-            for name, count in zip(j.arrays, np.bincount(j.blame[j.wrong].clip(0), minlength=99), strict=False):
+            for array, count in zip(j.arrays, np.bincount(j.blame[j.wrong].clip(0), minlength=99), strict=False):
                 if count:
-                    found[name] = found.get(name, 0) + int(count)
+                    found[array] = found.get(array, 0) + int(count)
     return found
 
 
 def test_every_array_that_is_read_is_tried() -> None:
     assert {n for _, n in PAIRS} == {*WRONG}
     for method, reads in READS.items():
-        names = {n.rpartition(".")[0] if n[-1].isdigit() else n for n in plain(method)} | {"color", "depth"}
+        of_cases = [n for name in CASES[method] for n in plain(name)]
+        names = {n.rpartition(".")[0] if n[-1].isdigit() else n for n in of_cases} | {"color", "depth"}
         assert names == {*reads} | {"color", "depth"}, method
 
 
-@pytest.mark.parametrize("method", READS)
-def test_the_plain_port_is_right(method: str) -> None:
-    assert blamed(method, plain(method)) == {}
+@pytest.mark.parametrize("name", [name for names in CASES.values() for name in names])
+def test_the_plain_port_is_right(name: str) -> None:
+    assert blamed(name, plain(name)) == {}
 
 
 @pytest.mark.parametrize(("method", "name"), PAIRS)
 def test_what_reads_an_array_follows_it(method: str, name: str) -> None:
-    arrays = tampered(case(method), name, WRONG[name])
-    found = blamed(method, arrays)
+    of = case_with(method, name)
+    found = blamed(of, tampered(case(of), name, WRONG[name]))
     assert name in found
     readers = {array for array, reads in READS[method].items() if name in reads}
     assert not readers & {*found}, "judged on something else than what was handed in"
@@ -152,13 +161,14 @@ def test_what_reads_an_array_follows_it(method: str, name: str) -> None:
 
 @pytest.mark.parametrize(("method", "name"), PAIRS)
 def test_what_does_not_follow_an_array_is_wrong(method: str, name: str) -> None:
-    changed = tampered(case(method), name, WRONG[name])[name]
-    found = blamed(method, plain(method) | {name: changed})
+    of = case_with(method, name)
+    changed = tampered(case(of), name, WRONG[name])[name]
+    found = blamed(of, plain(of) | {name: changed})
     if name in ("maps.image", "atlas.normal"):
         assert {*found} == {name}, "with these a port need not go on: the case hands them over"
     elif name == "maps.positions":
         assert {*found} == {name, "maps.image"}, "nor with these, but its own maps are of them"
-    elif name == "project.coord" or name.startswith("shade."):
+    elif name in ("project.coord", "project.blocker", "project.penumbra") or name.startswith("shade."):
         assert {*found} == {name}, "one judgement for both: the array before is blamed"
     else:
         assert {*found} - {name}
@@ -167,7 +177,8 @@ def test_what_does_not_follow_an_array_is_wrong(method: str, name: str) -> None:
 @pytest.mark.parametrize(("method", "name"), PAIRS)
 def test_a_rounding_is_legal_all_through(method: str, name: str) -> None:
     """The port computed with more digits than it handed in: the next float32 beside each number may as well be there."""
-    array = plain(method)[name]
+    of = case_with(method, name)
+    array = plain(of)[name]
     if np.asarray(array[0] if isinstance(array, tuple) else array).dtype.kind != "f":
         pytest.skip("no float")
     random = np.random.default_rng(7)
@@ -176,7 +187,7 @@ def test_a_rounding_is_legal_all_through(method: str, name: str) -> None:
         return page * (1.0 + 2.0**-24 * random.uniform(-0.99, 0.99, page.shape))
 
     changed = tuple(map(stored, array)) if isinstance(array, tuple) else stored(np.asarray(array))
-    assert {*blamed(method, plain(method) | {name: changed})} <= {name}
+    assert {*blamed(of, plain(of) | {name: changed})} <= {name}
 
 
 @pytest.mark.parametrize("method", READS)

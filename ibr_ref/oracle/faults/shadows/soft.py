@@ -104,7 +104,10 @@ class _MeanOfDepths(Port):
         return np.where(np.any(np.stack(counts), axis=0), self.distance(mean), 0.0)
 
 
-@SOFT.add("soft-empty-texels-block")
+@SOFT.add(
+    "soft-empty-texels-block",
+    survives="in no case is a receiver farther from the light than the map's far plane by more than the bias",
+)
 class _EmptyBlock(Port):
     """Texels that are empty, of depth 1, block at the far plane."""
 

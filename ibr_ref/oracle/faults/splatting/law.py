@@ -103,6 +103,14 @@ class _AlphaTooLarge(Port):
         return self.do.multiply(1.002, super().width(d))
 
 
+@LAW.add("width-of-half-precision", small=True)
+class _WidthOfHalfPrecision(Port):
+    """The width is a half float, as a mediump varying is."""
+
+    def width(self, d: Floats) -> Floats:
+        return super().width(d).astype(np.float16).astype(np.float64)
+
+
 @LAW.add("beta-too-large", small=True)
 class _BetaTooLarge(Port):
     """β is 1 % too large."""

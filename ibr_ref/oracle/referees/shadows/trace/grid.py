@@ -15,7 +15,7 @@ def grid_texel(given: Inputs, index: tuple[int, ...]) -> list[TraceRow]:
     lines = [program.lines_from_first(seen[k], *ends[k]) for k in range(2)]
     i, j = (min(max(int(line.value), 0), program.intervals() - 1) for line in lines)
     rows = [
-        number("the object as the sample sees it", bounded(seen)),
+        number("the object as the sample sees it", [bounded(seen[k]) for k in range(2)]),
         *(number(f"{axis}: first and last map", [bounded(end) for end in ends[k]]) for k, axis in enumerate("xy")),
         number("x, y in maps from the first", [bounded(line) for line in lines]),
     ]
