@@ -66,8 +66,8 @@ def command(
 ) -> None:
     """Measure this machine's device, draw cases with a sample port, and judge whether its driver is right.
 
-    A case is judged by the device that was measured, and where that one does not explain it, by any. Exit code 0: all pass,
-    1: a case fails, 2: a case cannot be judged.
+    A case is judged by the device that was measured, and where that one does not explain it, by any. One that the sample
+    port has no code for is left out. Exit code 0: all pass, 1: a case fails, 2: a case cannot be judged.
     """
     from ibr_ref.io.outputs import make_folder
     from ibr_ref.ports.drawing import SAMPLES
@@ -83,10 +83,12 @@ def command(
     with closing(SAMPLES[with_.value](adapter)) as drawer, tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) if out is None else out
         facts = _facts(drawer, folder)
-        findings = _judged(drawer, choices, folder, facts)
+        findings, left_out = _judged(drawer, choices, folder, facts)
+    if not findings:
+        raise ValueError("; ".join(left_out))
     if out is not None:
         _write(facts, findings, out)
-    typer.echo("\n".join([*_words(facts), *lines(findings, len(findings))]))
+    typer.echo("\n".join([*_words(facts), *left_out, *lines(findings, len(findings))]))
     raise typer.Exit(worst(findings))
 
 
@@ -129,12 +131,14 @@ def _words(facts: Facts) -> list[str]:
     ]
 
 
-def _judged(drawer: Drawer, choices: Sequence[Choice], folder: Path, facts: Facts) -> list[Finding]:
-    """Export, draw and check each."""
+def _judged(drawer: Drawer, choices: Sequence[Choice], folder: Path, facts: Facts) -> tuple[list[Finding], list[str]]:
+    """Export, draw and check each; and lines on those that the port does not draw."""
     from ibr_ref.oracle import files
     from ibr_ref.oracle.declaration import of_fields
+    from ibr_ref.ports.drawing import NOT_PORTED
 
-    device, findings = of_fields({**facts.declares, **facts.measured.numbers}), list[Finding]()
+    device = of_fields({**facts.declares, **facts.measured.numbers})
+    findings, left_out = list[Finding](), list[str]()
     with progress(len(choices)) as step:
         for each in choices:
             step(each.name)
@@ -144,11 +148,14 @@ def _judged(drawer: Drawer, choices: Sequence[Choice], folder: Path, facts: Fact
             try:
                 drawer.into(folder / "cases" / each.name, drawing)
             except ValueError as error:
-                findings.append(_refused(each.name, str(error)))
+                if NOT_PORTED in str(error):
+                    left_out.append(f"left out: {error}")
+                else:
+                    findings.append(_refused(each.name, str(error)))
                 continue
             found = _examined(case, drawing, device)
             findings.append(Finding(each.name, found.verdict, found, time.perf_counter() - started))
-    return findings
+    return findings, left_out
 
 
 def _examined(case: Any, drawing: Path, device: Declaration) -> Examination:

@@ -15,6 +15,9 @@ from ibr_ref.methods import named
 from ibr_ref.ports.case_folder import GivenCase, read_case
 from ibr_ref.ports.frame import Frame
 
+NOT_PORTED = "the port allows"
+"""In what a sample port says of a case that it has no code for; what else it says is wrong with it, or with the driver."""
+
 
 @dataclass(frozen=True)
 class Drawer:

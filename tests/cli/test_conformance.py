@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from ibr_ref.oracle.faults import splatting as programs
 from tests.cli.conftest import Run
 from tests.cli.errors import assert_one_line
 
@@ -72,6 +74,26 @@ def test_a_conformance_run(run: Run, tmp_path: Path) -> None:
     assert (code, said) == (0, "2 cases: 0 with another verdict.\n")
     assert "0 of 2 cases have another verdict" in (tmp_path / "both" / "compared.html").read_text()
     assert_one_line(run("conformance", "--compare", numbers, tmp_path / "out" / "index.html"), "found no run")
+
+
+def test_what_the_port_has_no_code_for_is_left_out(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And what it fails at is not."""
+    said = {"splatting-lamp": "shape = 'hexagon': the port allows square, disc"}
+    right = programs.Port.render
+
+    def render(self: Any) -> Any:
+        if len(self.scene.images) == 2 and said["splatting-lamp"]:
+            raise ValueError(said["splatting-lamp"])
+        return right(self)
+
+    monkeypatch.setattr(programs.Port, "render", render)
+    code, out, _ = run("conformance", "splatting-[bl]*", "--with", "plain")
+    assert (code, out.splitlines()[-1]) == (0, "1 case: 1 PASS.")
+    assert f"left out: splatting-lamp is not ported: {said['splatting-lamp']}" in out
+    assert_one_line(run("conformance", "splatting-lamp", "--with", "plain"), "the port allows square, disc")
+    said["splatting-lamp"] = "the shader does not compile"
+    code, out, _ = run("conformance", "splatting-[bl]*", "--with", "plain")
+    assert (code, "does not compile" in out) == (2, True)
 
 
 def test_a_case_that_fails_has_a_report(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

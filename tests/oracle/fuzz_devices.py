@@ -67,18 +67,20 @@ def judged(case: Case, random: np.random.Generator, where: str) -> Tried:
     arrays = port.open().Port(case.scene, case.params, policy, case.inputs).render()
     if random.integers(2):
         kept = random.random(len(arrays)) < random.uniform(0.2, 0.9)
-        arrays = {name: array for (name, array), there in zip(arrays.items(), kept, strict=True) if there} or arrays
+        some = {name: array for (name, array), there in zip(arrays.items(), kept, strict=True) if there}
+        arrays = some if {*some} - {"depth"} else arrays  # which alone says nothing
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         picture = {name: arrays[name] for name in ("color", "depth") if name in arrays}
         stages = {name: array for name, array in arrays.items() if name not in picture}
         submission = oracle.submission_from_arrays(case, stages=stages, **picture)
         examination = oracle.check(case, submission, profile=profile, name_causes=False)
-    verdict, last = examination.verdict, examination.judgements[-1]
+    verdict = examination.verdict
+    last = examination.judgements[-1].undecided if examination.judgements else np.zeros(0, np.bool_)
     complaint = None
     if verdict.outcome is not Outcome.PASS:
         complaint = f"{where}: {case.name} {case.params}\n{policy} by {profile}, {[*arrays]}\n{verdict.words()}"
-    return Tried(f"{case.method} {case.system}", profile, int(last.undecided.sum()), last.undecided.size, complaint)
+    return Tried(f"{case.method} {case.system}", profile, int(last.sum()), last.size, complaint)
 
 
 def run(blocks: range, of: int, workers: int) -> Iterator[Tried]:
