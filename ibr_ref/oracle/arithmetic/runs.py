@@ -71,9 +71,8 @@ class Runs:
                 yield job()
             return
         with ThreadPoolExecutor(threads()) as pool:
-            results = [
-                pool.submit(copy_context().run, alone, job) for job in jobs
-            ]  # NumPy's error state is the context's
+            # In a context like this one: it holds NumPy's error state.
+            results = [pool.submit(copy_context().run, alone, job) for job in jobs]
             try:
                 for found, rows in (each.result() for each in results):
                     self.run.rows += rows

@@ -127,12 +127,13 @@ class Numbers:
     def fitting(self, wrong: Judgement) -> Iterator[list[list[Mutant]]]:
         """And with those that its results look like: of each number some values, those of the fewest digits first."""
         every, some = np.ones_like(wrong.wrong), _spread_out(wrong.wrong)
-        first = {jumps: self._drawn(self.port, wrong, every if jumps else some) for jumps in (False, True)}
-        for setting in self.settings:
-            if not isinstance(setting.value(self.case), int):
-                among = every if setting.jumps else some
-                values = self._fitted(setting, wrong, among, first[setting.jumps])
-                yield [setting.suspects(self.port, self.case, value, LOOKS_LIKE) for value in values]
+        continuous = [each for each in self.settings if not isinstance(each.value(self.case), int)]
+        jumps = {each.jumps for each in continuous}
+        first = {jump: self._drawn(self.port, wrong, every if jump else some) for jump in jumps}
+        for setting in continuous:
+            among = every if setting.jumps else some
+            values = self._fitted(setting, wrong, among, first[setting.jumps])
+            yield [setting.suspects(self.port, self.case, value, LOOKS_LIKE) for value in values]
 
     def recognizes(self, inquiry: Inquiry, wrong: Judgement, name: str) -> bool:
         """Whether the bug or the number of that name explains every element of a stage."""

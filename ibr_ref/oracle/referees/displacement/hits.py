@@ -12,7 +12,7 @@ from ibr_ref.array_types import Ints
 from ibr_ref.oracle.accept.winners import Winners, winners
 from ibr_ref.oracle.arithmetic.decisions import joined
 from ibr_ref.oracle.arithmetic.number import Number
-from ibr_ref.oracle.referees.displacement.model import Model, shares
+from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades, Vector, absorbed, taken
 
 
@@ -42,8 +42,7 @@ def _points(model: Model, raster: Any) -> Points:
             depth=absorbed(depth),
         )
 
-    of_polygons = (np.flatnonzero(fragments.polygon == polygon) for polygon in range(len(model.patches)))
-    jobs = [partial(points, some) for mine in of_polygons for some in shares(mine)]
+    jobs = [partial(points, some) for _, some in model.shares(np.arange(len(fragments)), fragments.polygon)]
     parts = [*model.machine.side_by_side(jobs)]
     return Points.joined(parts) if parts else no_points(model)
 
@@ -63,10 +62,7 @@ def _followed(
     model: Model, rows: Ints, polygon: Ints, run: Callable[[int, Ints, Ints], dict[str, Any]]
 ) -> Iterator[Outcomes]:
     """All outcomes of a run of a polygon, rows and lanes: of rows whose polygons are given, some thousands at a time."""
-    jobs = []
-    for number in range(len(model.patches)):
-        mine = rows[polygon == number]
-        jobs += [partial(_outcomes, model, some, partial(run, number)) for some in shares(mine)]
+    jobs = [partial(_outcomes, model, some, partial(run, number)) for number, some in model.shares(rows, polygon)]
     return model.machine.side_by_side(jobs)
 
 

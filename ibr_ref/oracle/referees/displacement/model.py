@@ -26,11 +26,6 @@ CHUNK = 1 << 14
 """Rows that are followed at a time, at the most: more, and their arrays leave the cache; fewer, and Python takes longer."""
 
 
-def shares(rows: Ints) -> list[Ints]:
-    """Equal parts, one after the other, for as many threads as there are; which parts does not depend on these."""
-    return np.array_split(rows, -(-len(rows) // CHUNK)) if len(rows) else []
-
-
 AXES = ("x", "y")
 """The symbols of a fragment's box."""
 
@@ -99,6 +94,14 @@ class Model:
     def patch_number(self, polygon: Ints) -> Ints:
         """As it is written."""
         return np.array([self.program.patch_number(p) for p in self.patches], np.int64)[polygon]
+
+    def shares(self, rows: Ints, polygon: Ints) -> list[tuple[int, Ints]]:
+        """Rows (n,) of each polygon (n,), with its number, in equal parts; which parts does not depend on the threads."""
+        found = []
+        for number in range(len(self.patches)):  # which are there before their symbols are used side by side
+            mine = rows[polygon == number]
+            found += [(number, some) for some in np.array_split(mine, max(1, -(-len(mine) // CHUNK))) if len(some)]
+        return found
 
     def marched(self, polygon: int, face: Ints, point: Vector, depth: Any) -> dict[str, Any]:
         """The march of fragments, a lane each, and their window depths; within `Machine.follow`."""

@@ -20,7 +20,7 @@ from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.pipeline.raster import Fragments
 from ibr_ref.oracle.programs.displacement import Port as Program
-from ibr_ref.oracle.referees.displacement.model import AXES, Model, Raster, shares
+from ibr_ref.oracle.referees.displacement.model import AXES, Model, Raster
 from ibr_ref.oracle.referees.displacement.rows import Rows
 
 SMALLEST = 2.0**-14
@@ -113,10 +113,9 @@ class Picture:
         anywhere = self.fragments.pieces[boxes.fragment, :3].max(axis=1, initial=0.0) > ANYWHERE
         if anywhere.any():
             yield self._nothing(), np.flatnonzero(anywhere)
-        jobs = []
-        for polygon in range(len(self.model.patches)):
-            mine = np.flatnonzero((self.fragments.polygon[boxes.fragment] == polygon) & ~anywhere)
-            jobs += [partial(self._looks, polygon, boxes.take(some), some) for some in shares(mine)]
+        rows = np.flatnonzero(~anywhere)
+        parts = self.model.shares(rows, self.fragments.polygon[boxes.fragment[rows]])
+        jobs = [partial(self._looks, polygon, boxes.take(some), some) for polygon, some in parts]
         yield from self.model.machine.side_by_side(jobs)
 
     def _looks(self, polygon: int, boxes: Boxes, names: Ints) -> tuple[Looks, Ints]:

@@ -54,14 +54,33 @@ def _agreeing(given: Inputs) -> tuple[Bools, Bools]:
 
 def projected(given: Inputs) -> Judgement | None:
     """Coordinates and shadows of all samples together, for each fragment that a pixel may show."""
-    if given.model.program.soft:
-        return replay_soft.projected(given, *_agreeing(given))
-    coords, found = given.own("project.coord"), given.own("project.shadow")
-    names = [n for n, a in (("project.coord", coords), ("project.shadow", found)) if a is not None]
+    soft = given.model.program.soft
+    names = [
+        name for name in (replay_soft.NAMES if soft else ("project.coord", "project.shadow")) if name in given.handed
+    ]
     if not names:
         return None
+    agreement = replay_soft.agreement if soft else _agreement
+    legal, nothing, undecided, width = agreement(given, names, *_agreeing(given))
+    names, seen = [*legal], given.seen
+    right = [seen.any_of(seen.pixel, legal[name], nothing[name]).reshape(seen.shape) for name in names]
+    every = [np.logical_and.reduce([each[name] for name in names]) for each in (legal, nothing)]
+    return judgement(
+        "project",
+        "pixel",
+        names,
+        right,
+        width.reshape(seen.shape),
+        replayed=_fed(given, *names),
+        undecided=undecided.reshape(seen.shape),
+        together=seen.any_of(seen.pixel, *every).reshape(seen.shape),
+    )
+
+
+def _agreement(given: Inputs, names: list[str], fragments: Bools, bare: Bools) -> replay_soft.Agreement:
+    """By the maps of all samples."""
+    coords, found = given.own("project.coord"), given.own("project.shadow")
     seen, pixel = given.seen, given.seen.pixel
-    fragments, bare = _agreeing(given)
     legal, nothing = {name: fragments.copy() for name in names}, {name: bare.copy() for name in names}
     undecided, width = seen.wild.copy(), np.zeros(len(seen.empty))
     for i in range(given.count):
@@ -84,18 +103,7 @@ def projected(given: Inputs) -> Judgement | None:
             if given.refuted(seen.any_of(pixel, legal["project.shadow"], nothing["project.shadow"])):
                 break
             np.maximum.at(width, pixel, 2.0 * np.broadcast_to(shadows.first.error, pixel.shape))
-    right = [seen.any_of(pixel, legal[name], nothing[name]).reshape(seen.shape) for name in names]
-    every = [np.logical_and.reduce([each[name] for name in names]) for each in (legal, nothing)]
-    return judgement(
-        "project",
-        "pixel",
-        names,
-        right,
-        width.reshape(seen.shape),
-        replayed=_fed(given, *names),
-        undecided=undecided.reshape(seen.shape),
-        together=seen.any_of(pixel, *every).reshape(seen.shape),
-    )
+    return replay_soft.Agreement(legal, nothing, undecided, width)
 
 
 def _differs(legal: Shadow) -> Bools:

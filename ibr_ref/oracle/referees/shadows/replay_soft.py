@@ -3,29 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded, stored
-from ibr_ref.oracle.judgement import Judgement
-from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
-from ibr_ref.oracle.referees.shadows.judging import judgement
 from ibr_ref.oracle.referees.shadows.maps import VISIBLE
 from ibr_ref.oracle.referees.shadows.project import Coordinate, handed, outcomes_of
 
 NAMES = ("project.coord", "project.blocker", "project.penumbra", "project.shadow")
+
+
+class Agreement(NamedTuple):
+    """Of arrays in their order, up to the first that is refuted, by their names."""
+
+    legal: dict[str, Bools]
+    """(n,) whether fragments may have what the port has."""
+    nothing: dict[str, Bools]
+    """(H W,) whether pixels have what is where nothing is."""
+    undecided: Bools
+    """(H W,)."""
+    width: Floats
+    """(H W,) of what is legal."""
+
+
 Steps = Callable[[Any, Any, Any, Ints], Any]
 """Of the program, the map, where fragments are on it, and which: what one array has of them."""
 
 
-def projected(given: Inputs, fragments: Bools, bare: Bools) -> Judgement | None:
+def agreement(given: Inputs, names: list[str], fragments: Bools, bare: Bools) -> Agreement:
     """Of each fragment that a pixel may show; fragments (n,) and pixels (H W,) are those that the port's depth leaves."""
-    names = [name for name in NAMES if name in given.handed]
-    if not names:
-        return None
     seen, pixel = given.seen, given.seen.pixel
     undecided, width = seen.wild.copy(), np.zeros(len(seen.empty))
     legal, nothing = {}, {}
@@ -37,22 +46,8 @@ def projected(given: Inputs, fragments: Bools, bare: Bools) -> Judgement | None:
         undecided[pixel[open_]] = True
         np.maximum.at(width, pixel, off)
         if given.refuted(seen.any_of(pixel, legal[name], nothing[name])):
-            names = names[: names.index(name) + 1]
             break
-    right = [seen.any_of(pixel, legal[name], nothing[name]).reshape(seen.shape) for name in names]
-    every = [np.logical_and.reduce([each[name] for name in names]) for each in (legal, nothing)]
-    return judgement(
-        "project",
-        "pixel",
-        names,
-        right,
-        width.reshape(seen.shape),
-        replayed=tuple(
-            name for name in fed("shadows", names, given.handed) if name != "depth" or "depth" in given.handed
-        ),
-        undecided=undecided.reshape(seen.shape),
-        together=seen.any_of(pixel, *every).reshape(seen.shape),
-    )
+    return Agreement(legal, nothing, undecided, width)
 
 
 def found_of(given: Inputs, name: str) -> Floats:
