@@ -103,7 +103,7 @@ class _AlphaTooLarge(Port):
         return self.do.multiply(1.002, super().width(d))
 
 
-@LAW.add("width-of-half-precision", small=True)
+@LAW.add("width-of-half-precision", small=True, hidden="a half float's step moves an edge by less than a subpixel")
 class _WidthOfHalfPrecision(Port):
     """The width is a half float, as a mediump varying is."""
 
