@@ -143,10 +143,13 @@ class Explanation:
 
 @runtime_checkable
 class Glances(Protocol):
-    """A referee that can look at a few pixels of a picture much sooner than at all."""
+    """A referee that can look at a few elements of a stage, or of a picture, much sooner than at all."""
 
-    def explains_pixels(self, case: Case, device: Device, handed: Handed, among: NDArray[np.bool_]) -> bool:
-        """Whether a device explains all pixels (H, W) `among`, by the picture alone."""
+    def explains(self, case: Case, device: Device, handed: Handed, stage: str, among: NDArray[np.bool_]) -> bool:
+        """Whether a device contradicts no element `among`, one after the other.
+
+        stage: of its judgement, or `Judgement.part`. Of one whose elements hang together all are looked at.
+        """
 
 
 @runtime_checkable

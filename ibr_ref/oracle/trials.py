@@ -34,7 +34,7 @@ LIMITS: dict[str, Any] = {
 """What some device does of all else that can be declared: a port may say too little of its own."""
 
 FEW = 24
-"""Wrong pixels that are looked at before all."""
+"""Wrong elements that are looked at before all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +50,11 @@ class Trial:
     def wrong(self) -> int:
         """Elements that the device does not explain."""
         return sum(int(j.wrong.sum()) for j in self.judgements)
+
+    @property
+    def first_wrong(self) -> int | None:
+        """Of the judgements the first that has such elements."""
+        return next((i for i, j in enumerate(self.judgements) if j.wrong.any()), None)
 
 
 def judge(case: Case, handed: Handed, device: Device, *, to_first_wrong: bool = False) -> list[Judgement]:
@@ -116,14 +121,15 @@ def _with(device: Device, more: Mapping[str, Any]) -> Device:
 
 
 def _refuted(case: Case, handed: Handed, failed: Trial, more: Mapping[str, Any]) -> bool:
-    """Whether a few of the picture's wrong pixels are wrong with more numbers too, where that is soon known."""
-    judge_of, last = referee(case.method), failed.judgements[-1]
-    if last.stage != "image" or not last.wrong.any() or not isinstance(judge_of, Glances):
+    """Whether a few elements of the first wrong judgement are wrong with more numbers too, where that is soon known."""
+    judge_of, at = referee(case.method), failed.first_wrong
+    if at is None or not isinstance(judge_of, Glances):
         return False
-    wrong = np.flatnonzero(last.wrong)
-    few = np.zeros(last.wrong.size, np.bool_)
+    judgement = failed.judgements[at]
+    wrong = np.flatnonzero(judgement.wrong)
+    few = np.zeros(judgement.wrong.size, np.bool_)
     few[wrong[:: max(1, len(wrong) // FEW)]] = True
-    return not judge_of.explains_pixels(case, _with(failed.device, more), handed, few.reshape(last.wrong.shape))
+    return not judge_of.explains(case, _with(failed.device, more), handed, judgement.part or judgement.stage, few)
 
 
 def needed(case: Case, handed: Handed, failed: Trial, *, limits: bool = False) -> dict[str, Any]:
@@ -131,13 +137,14 @@ def needed(case: Case, handed: Handed, failed: Trial, *, limits: bool = False) -
 
     limits: not only `FREEDOMS` are tried, but also what else it has less of than others.
     """
-    wrong = next(i for i, j in enumerate(failed.judgements) if j.wrong.any())
+    wrong = failed.first_wrong
+    assert wrong is not None, "a trial that nothing is wrong in needs no more"
 
     def right(judgements: list[Judgement]) -> bool:
         return len(judgements) > wrong and not judgements[wrong].wrong.any()
 
     def explains(more: Mapping[str, Any]) -> bool:
-        if failed.judgements[wrong].stage == "image" and _refuted(case, handed, failed, more):
+        if _refuted(case, handed, failed, more):
             return False
         return right(judge(case, handed, _with(failed.device, more), to_first_wrong=True))
 

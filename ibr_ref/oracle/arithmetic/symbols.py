@@ -34,8 +34,13 @@ def places(names: Names, of: Names) -> Ints:
 
 def together(*shapes: tuple[int, ...]) -> tuple[int, ...]:
     """The shape that several broadcast to: `numpy.broadcast_shapes`, which takes as long as an operation, where it must."""
-    found = max(shapes, key=len, default=())
-    return found if all(shape in (found, ()) for shape in shapes) else np.broadcast_shapes(*shapes)
+    found: tuple[int, ...] = ()
+    for shape in shapes:
+        if shape and shape != found:
+            if found:
+                return np.broadcast_shapes(*shapes)
+            found = shape
+    return found
 
 
 def shaped(rows: Floats, shape: tuple[int, ...]) -> Floats:
@@ -50,10 +55,8 @@ def flat(rows: Floats, shape: tuple[int, ...]) -> Floats:
     """(3 + K, n), or (3 + K, 1) of what is the same everywhere; one after the other in memory, for compiled code."""
     if rows.ndim == 1:
         rows = rows.reshape(len(rows), 1)
-    else:
-        rows = shaped(rows, shape)
-        if rows.ndim != 2:
-            rows = rows.reshape(len(rows), -1)
+    elif rows.shape[1:] != shape or rows.ndim != 2:
+        rows = shaped(rows, shape).reshape(len(rows), -1)
     flags = rows.flags
     return rows if flags.c_contiguous and flags.writeable else rows.copy()
 

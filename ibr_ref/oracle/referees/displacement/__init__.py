@@ -19,7 +19,7 @@ from ibr_ref.oracle.referees.displacement import image
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.parameters import parameters
 from ibr_ref.oracle.referees.displacement.replay import Port
-from ibr_ref.oracle.referees.displacement.stages import Stages
+from ibr_ref.oracle.referees.displacement.stages import SAMPLED, Stages
 from ibr_ref.oracle.referees.displacement.trace import trace
 
 __all__ = ["DisplacementReferee"]
@@ -49,10 +49,13 @@ class DisplacementReferee:
         with np.errstate(all="ignore"):
             return image.judge_image(case, device, handed)
 
-    def explains_pixels(self, case: Case, device: Device, handed: Handed, among: Bools) -> bool:
-        """Whether no pixel (H, W) `among` is wrong."""
+    def explains(self, case: Case, device: Device, handed: Handed, stage: str, among: Bools) -> bool:
+        """Whether no pixel `among` is wrong in a stage, or in the picture."""
         with np.errstate(all="ignore"):
-            return image.explains(case, device, handed, among)
+            if stage == "image":
+                return image.explains(case, device, handed, among)
+            some = among if stage in SAMPLED else None
+            return not Stages(Port(model=Model(case, device), handed=handed, among=some)).judge(stage).wrong.any()
 
     def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
         """The computation of one element of a stage, reference and port side by side."""

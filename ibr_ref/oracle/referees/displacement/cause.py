@@ -18,7 +18,7 @@ from ibr_ref.oracle.referees.causes import EVIDENCE, Inquiry, Numbers, explained
 from ibr_ref.oracle.referees.displacement.likely import likely
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.replay import ARRAYS, Port
-from ibr_ref.oracle.referees.displacement.stages import Stages
+from ibr_ref.oracle.referees.displacement.stages import SAMPLED, Stages
 from ibr_ref.searches import SEARCHES
 
 FACES = frozenset(dir(Vertex)) | frozenset(dir(Raster))
@@ -92,7 +92,7 @@ def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
         mutants=[mutant for mutant in MUTANTS if mutant.applies(case.system)],
         arrays={**ARRAYS, "resolve": (), "image": ()},
         replay=replay,
-        sampled=("march", "shade", "resolve", "image"),
+        sampled=SAMPLED,
     )
 
 

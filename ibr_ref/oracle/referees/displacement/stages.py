@@ -33,6 +33,8 @@ from ibr_ref.oracle.referees.displacement.rows import Hits, Points, Shades
 START = 500
 """What setting up a program costs, in rows."""
 STAGES = ("vertex", "raster", "march", "shade", "resolve")
+SAMPLED = ("march", "shade", "resolve", "image")
+"""Of which some elements are sooner judged than all."""
 
 
 class Stages:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement, Parameter, TraceRow, up_to
 from ibr_ref.oracle.referees.shadows.image import Accepted
 from ibr_ref.oracle.referees.shadows.inputs import HANDED_OVER, Inputs
 from ibr_ref.oracle.referees.shadows.parameters import parameters
-from ibr_ref.oracle.referees.shadows.stages import judged, judgements
+from ibr_ref.oracle.referees.shadows.stages import PIXELS, Replay, judged, judgements, part_of
 from ibr_ref.oracle.referees.shadows.trace import trace
 
 _MADE = ("maps.positions", "maps.image", "controls")
@@ -48,6 +50,17 @@ class ShadowsReferee:
         other = Accepted.of(given).judge(handed)
         return judgement if judgement.wrong.sum() <= other.wrong.sum() else other
 
+    def explains(self, case: Case, device: Device, handed: Handed, stage: str, among: Bools) -> bool:
+        """Whether no element `among` is wrong in a part of a stage, or in the picture.
+
+        A picture beside own maps may be made with them: it is not contradicted so soon.
+        """
+        part = part_of(stage)
+        if part == "image" and {*HANDED_OVER} & {*handed}:
+            return True
+        given = self._given(case, device, handed, stage)
+        return not Replay(replace(given, among=among) if part in PIXELS else given).judge(part).wrong.any()
+
     def _of(self, case: Case, device: Device) -> Inputs:
         """What follows from the last case and device is kept for further submissions."""
         if self._alone is None or self._alone.case is not case or self._alone.device is not device:
@@ -62,17 +75,17 @@ class ShadowsReferee:
         """The known bugs that explain a wrong stage."""
         from ibr_ref.oracle.referees.shadows.cause import causes  # with all known bugs: what passes needs none
 
-        return causes(self._given(case, device, handed, wrong), handed, wrong)
+        return causes(self._given(case, device, handed, wrong.stage), handed, wrong)
 
     def recognizes(self, case: Case, device: Device, handed: Handed, wrong: Judgement, cause: str) -> bool:
         """Whether the known bug of a name explains a wrong stage."""
         from ibr_ref.oracle.referees.shadows.cause import recognizes
 
-        return recognizes(self._given(case, device, handed, wrong), wrong, cause)
+        return recognizes(self._given(case, device, handed, wrong.stage), wrong, cause)
 
-    def _given(self, case: Case, device: Device, handed: Handed, wrong: Judgement | None = None) -> Inputs:
-        """wrong: of a picture by itself nothing of the port is fed to anything."""
-        if wrong is not None and wrong.stage == "image":
+    def _given(self, case: Case, device: Device, handed: Handed, stage: str = "") -> Inputs:
+        """stage: of a picture by itself nothing of the port is fed to anything."""
+        if stage == "image":
             return Inputs(case, device, {}, self._of(case, device), picture=handed)
         return Inputs(case, device, handed, self._of(case, device))
 

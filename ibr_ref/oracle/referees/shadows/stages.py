@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.referees.shadows import replay_maps, replay_picture, replay_soft
+from ibr_ref.oracle.referees.shadows.image import Accepted
 from ibr_ref.oracle.referees.shadows.inputs import HANDED_OVER, Inputs
 
 Judge = Callable[[Inputs], Judgement | None]
@@ -26,6 +28,17 @@ PARTS: dict[str, tuple[str, tuple[str, ...], Judge]] = {
     "resolve": ("resolve", ("color",), replay_picture.colors),
 }
 """By part its stage, its arrays, and who judges it, in order."""
+ARRAYS: dict[str, tuple[str, ...]] = {**{part: arrays for part, (_, arrays, _) in PARTS.items()}, "image": ()}
+"""For each part of a stage that is judged by itself the arrays that it is compared by."""
+PIXELS = ("depth", "project", "accumulate", "resolve", "image")
+"""Whose elements are pixels, of which some are sooner judged than all."""
+START = 100
+"""What setting up a program costs, in rows of a march."""
+
+
+def part_of(stage: str) -> str:
+    """The part that a stage has, or that an array is of; "image" is one."""
+    return next((part for part, (_, arrays, _) in PARTS.items() if stage in arrays), stage)
 
 
 def judgements(given: Inputs) -> Iterator[Judgement]:
@@ -43,3 +56,36 @@ def judged(given: Inputs, part: str) -> Judgement | None:
     assert given.as_the_case is not None
     other = judge(given.as_the_case)
     return judgement if other is None or judgement.wrong.sum() <= other.wrong.sum() else other
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """A port's stages part by part, by the program that is given."""
+
+    given: Inputs
+    known: dict[str, Judgement | None] = field(default_factory=dict)
+
+    @property
+    def cost(self) -> int:
+        """In rows of a march: those of this program are a sixteenth as long."""
+        return START + self.given.model.machine.run.rows // 16
+
+    def names(self, part: str) -> tuple[str, ...]:
+        """What of a part was handed in, and is judged in this case."""
+        named = tuple(name for name in ARRAYS[part] if name in self.given.handed)
+        return named if named and self._judged(part) is not None else ()
+
+    def _judged(self, part: str) -> Judgement | None:
+        if part not in self.known:
+            alone = part == "image"
+            self.known[part] = Accepted.of(self.given).judge(self.given.picture) if alone else judged(self.given, part)
+        return self.known[part]
+
+    def judge(self, part: str) -> Judgement:
+        """One part, or "image"; of a picture the pixels that are looked at."""
+        found = self._judged(part)
+        assert found is not None
+        among = self.given.among
+        if among is None or part not in PIXELS:
+            return found
+        return replace(found, wrong=found.wrong & among.reshape(found.wrong.shape))

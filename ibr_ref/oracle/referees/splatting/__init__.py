@@ -11,12 +11,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement, Parameter, TraceRow, up_to
 from ibr_ref.oracle.referees.splatting.model import model_of
 from ibr_ref.oracle.referees.splatting.parameters import parameters
-from ibr_ref.oracle.referees.splatting.stages import STAGES, Stages
+from ibr_ref.oracle.referees.splatting.stages import SAMPLED, STAGES, Stages
 from ibr_ref.oracle.referees.splatting.trace import trace
 
 __all__ = ["SplattingReferee"]
@@ -38,6 +39,12 @@ class SplattingReferee:
         """The picture, and depth where it is handed in, from the case alone."""
         with np.errstate(all="ignore"):
             return Stages(model_of(case, device), handed).judge("image")
+
+    def explains(self, case: Case, device: Device, handed: Handed, stage: str, among: Bools) -> bool:
+        """Whether no element `among` is wrong in a stage, or in the picture."""
+        some = among if stage in SAMPLED else None
+        with np.errstate(all="ignore"):
+            return not Stages(model_of(case, device), handed, some).judge(stage).wrong.any()
 
     def trace(self, case: Case, device: Device, handed: Handed, stage: str, index: tuple[int, ...]) -> list[TraceRow]:
         """The computation of one element of a stage, reference and port side by side."""

@@ -13,7 +13,7 @@ from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.splatting import Port as Program
 from ibr_ref.oracle.referees.causes import Inquiry, Numbers, explained
 from ibr_ref.oracle.referees.splatting.model import Model, model_of
-from ibr_ref.oracle.referees.splatting.stages import ARRAYS, Stages
+from ibr_ref.oracle.referees.splatting.stages import ARRAYS, SAMPLED, Stages
 
 LAW = ("alpha", "beta", "gamma", "delta")
 """Numbers of the widths' law."""
@@ -66,6 +66,4 @@ def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
     def replay(kind: type[Any], among: Bools | None) -> Stages:
         return Stages(Model(case, device, kind, right.port.model), handed, among, right)
 
-    return Inquiry(
-        mutants=MUTANTS, arrays={**ARRAYS, "image": ()}, replay=replay, sampled=("normals", "vertex", "image")
-    )
+    return Inquiry(mutants=MUTANTS, arrays={**ARRAYS, "image": ()}, replay=replay, sampled=SAMPLED)

@@ -18,6 +18,8 @@ ARRAYS = {
 }
 """For each stage the arrays that it is compared by."""
 STAGES = tuple(ARRAYS)
+SAMPLED = ("normals", "vertex", "image")
+"""Of which some elements are sooner judged than all."""
 START = 100
 """What setting up a program costs, in rows of a march."""
 
