@@ -120,6 +120,18 @@ def _emit(polygon, count, triangle, total, out_clip, out_varyings, out_source):
     return total
 
 
+@device
+def _keep(clip, varyings, indices, triangle, total, out_clip, out_varyings, out_source):
+    """Append a triangle that no plane cuts to the output."""
+    out_source[total] = triangle
+    for corner in range(3):
+        vertex = indices[triangle, corner]
+        for k in range(4):
+            out_clip[total, corner, k] = clip[vertex, k]
+        for k in range(varyings.shape[1]):
+            out_varyings[total, corner, k] = varyings[vertex, k]
+
+
 @routine
 def _clip(clip, varyings, indices, guard_x, guard_y, out_clip, out_varyings, out_source):
     """Clip all triangles in order; the number of triangles that are left."""
@@ -127,23 +139,26 @@ def _clip(clip, varyings, indices, guard_x, guard_y, out_clip, out_varyings, out
     spare = np.empty_like(polygon)
     total = 0
     for triangle in range(len(indices)):
+        if not _outside(clip, indices, triangle, guard_x, guard_y):
+            _keep(clip, varyings, indices, triangle, total, out_clip, out_varyings, out_source)
+            total += 1
+            continue
         for corner in range(3):
             vertex = indices[triangle, corner]
             for k in range(polygon.shape[1]):
                 polygon[corner, k] = clip[vertex, k] if k < 4 else varyings[vertex, k - 4]
-        count = 3
-        if _outside(clip, indices, triangle, guard_x, guard_y):
-            count = _clip_polygon(polygon, spare, guard_x, guard_y)
+        count = _clip_polygon(polygon, spare, guard_x, guard_y)
         total = _emit(polygon, count, triangle, total, out_clip, out_varyings, out_source)
     return total
 
 
-def _most_triangles(clip: NDArray[np.float64], indices: NDArray[np.int32], guard_x: float, guard_y: float) -> int:
+@routine
+def _most_triangles(clip, indices, guard_x, guard_y):
     """Room for all results: a triangle with all corners inside stays one, another becomes at most a fan of seven."""
-    x, y, z, w = clip.T
-    inside = (z >= 0.0) & (z <= w) & (abs(x) <= guard_x * w) & (abs(y) <= guard_y * w)
-    whole = int(inside[indices].all(axis=1).sum())
-    return whole + (len(indices) - whole) * (_MOST - 2)
+    room = 0
+    for triangle in range(len(indices)):
+        room += _MOST - 2 if _outside(clip, indices, triangle, guard_x, guard_y) else 1
+    return room
 
 
 def clip_triangles(

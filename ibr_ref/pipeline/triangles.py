@@ -17,6 +17,9 @@ from ibr_ref.pipeline.clip import ClippedTriangles
 
 SUBPIXELS = 256
 
+FEW_COLUMNS = 8
+"""So many are tried one by one: a division takes as long."""
+
 
 class Triangles(NamedTuple):
     """Triangles ready for rasterization; everything (T, 3) per corner unless said otherwise."""
@@ -127,8 +130,45 @@ def edges_in_row(xs, ys, row):
 
 
 @device
+def fall_of(xs, ys):
+    """By how much the edge functions are larger in the next row."""
+    here, below = edges_in_row(xs, ys, 0), edges_in_row(xs, ys, 1)
+    return below.e0 - here.e0, below.e1 - here.e1, below.e2 - here.e2
+
+
+@device
+def moved_down(edges, fall):
+    """The edge functions in the next row."""
+    return Edges(
+        edges.e0 + fall[0],
+        edges.e1 + fall[1],
+        edges.e2 + fall[2],
+        edges.step0,
+        edges.step1,
+        edges.step2,
+        edges.least0,
+        edges.least1,
+        edges.least2,
+    )
+
+
+@device
+def columns_of(xs, width):
+    """The columns [first, stop) of the picture whose centres lie between the corners: a triangle covers no other."""
+    low, high, half = min(xs[0], xs[1], xs[2]), max(xs[0], xs[1], xs[2]), SUBPIXELS // 2
+    first = max(np.int64(0), (low - half + SUBPIXELS - 1) // SUBPIXELS)
+    return first, min(np.int64(width), (high - half) // SUBPIXELS + 1)
+
+
+@device
 def _narrow(value, step, least, first, stop):
     """The columns of [first, stop) where value + column * step >= least."""
+    if stop - first <= FEW_COLUMNS:
+        while first < stop and value + step * first < least:
+            first += 1
+        while first < stop and value + step * (stop - 1) < least:
+            stop -= 1
+        return first, stop
     if step > 0:
         return max(first, -((value - least) // step)), stop
     if step < 0:
@@ -139,7 +179,13 @@ def _narrow(value, step, least, first, stop):
 @device
 def columns_in_row(edges, width):
     """The columns [first, stop) of the picture that the triangle covers in this row."""
-    first, stop = _narrow(edges.e0, edges.step0, edges.least0, np.int64(0), np.int64(width))
+    return columns_within(edges, np.int64(0), np.int64(width))
+
+
+@device
+def columns_within(edges, first, stop):
+    """Those of [first, stop)."""
+    first, stop = _narrow(edges.e0, edges.step0, edges.least0, first, stop)
     first, stop = _narrow(edges.e1, edges.step1, edges.least1, first, stop)
     first, stop = _narrow(edges.e2, edges.step2, edges.least2, first, stop)
     return first, max(first, stop)

@@ -12,8 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.jit import device, kernel, prange, routine
+from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.merge import passes
-from ibr_ref.pipeline.triangles import Triangles, columns_in_row, edges_in_row, fill_depth, fill_varyings
+from ibr_ref.pipeline.triangles import (
+    Triangles,
+    columns_of,
+    columns_within,
+    edges_in_row,
+    fall_of,
+    fill_depth,
+    fill_varyings,
+    moved_down,
+)
 
 BAND_ROWS = 16
 
@@ -58,14 +68,17 @@ def _bands(triangles: Triangles, height: int) -> tuple[NDArray[np.int32], NDArra
 @device
 def _draw_triangle(triangles, t, first_row, last_row, spare, winner, depth):
     """Depth-test one triangle in the rows [first_row, last_row) of the picture."""
-    for row in range(max(first_row, triangles.rows[t, 0]), min(last_row, triangles.rows[t, 1])):
-        edges = edges_in_row(triangles.x[t], triangles.y[t], row)
-        first, stop = columns_in_row(edges, winner.shape[1])
+    xs, ys, from_row = triangles.x[t], triangles.y[t], max(first_row, triangles.rows[t, 0])
+    low, high = columns_of(xs, winner.shape[1])
+    edges, fall = edges_in_row(xs, ys, from_row), fall_of(xs, ys)
+    for row in range(from_row, min(last_row, triangles.rows[t, 1])):
+        first, stop = columns_within(edges, low, high)
         fill_depth(edges, first, stop, triangles.z[t], spare, 0)
         for column in range(first, stop):
             if passes(spare[column - first], depth[row, column]):
                 depth[row, column] = spare[column - first]
                 winner[row, column] = t
+        edges = moved_down(edges, fall)
 
 
 @device
@@ -81,7 +94,10 @@ def _draw_band(triangles, members, first_row, last_row, winner, depth):
 
 @kernel
 def _draw(triangles, members, starts, winner, depth):
-    for band in prange(len(starts) - 1):
+    bands = len(starts) - 1
+    stride = stride_of(bands)
+    for turn in prange(bands):
+        band = turn * stride % bands
         first_row = band * BAND_ROWS
         last_row = min(winner.shape[0], first_row + BAND_ROWS)
         _draw_band(triangles, members[starts[band] : starts[band + 1]], first_row, last_row, winner, depth)
@@ -100,16 +116,26 @@ def _cover_band(triangles, members, first_row, last_row, out):
     for row in range(first_row, last_row):
         for column in range(out.shape[1]):
             out[row, column] = 0
-    for t in members:
-        for row in range(max(first_row, triangles.rows[t, 0]), min(last_row, triangles.rows[t, 1])):
-            first, stop = columns_in_row(edges_in_row(triangles.x[t], triangles.y[t], row), out.shape[1])
+    x, y, rows = triangles.x, triangles.y, triangles.rows  # taken out in the loop, each is counted: atomic operations
+    for i in range(len(members)):
+        t = members[i]
+        xs, ys = (x[t, 0], x[t, 1], x[t, 2]), (y[t, 0], y[t, 1], y[t, 2])
+        from_row = max(first_row, rows[t, 0])
+        low, high = columns_of(xs, out.shape[1])
+        edges, fall = edges_in_row(xs, ys, from_row), fall_of(xs, ys)
+        for row in range(from_row, min(last_row, rows[t, 1])):
+            first, stop = columns_within(edges, low, high)
             for column in range(first, stop):
                 out[row, column] = 1
+            edges = moved_down(edges, fall)
 
 
 @kernel
 def _cover(triangles, members, starts, out):
-    for band in prange(len(starts) - 1):
+    bands = len(starts) - 1
+    stride = stride_of(bands)
+    for turn in prange(bands):
+        band = turn * stride % bands
         first_row = band * BAND_ROWS
         last_row = min(out.shape[0], first_row + BAND_ROWS)
         _cover_band(triangles, members[starts[band] : starts[band + 1]], first_row, last_row, out)

@@ -103,12 +103,12 @@ class _AlphaTooLarge(Port):
         return self.do.multiply(1.002, super().width(d))
 
 
-@LAW.add("width-of-half-precision", small=True, hidden="a half float's step moves an edge by less than a subpixel")
-class _WidthOfHalfPrecision(Port):
-    """The width is a half float, as a mediump varying is."""
+@LAW.add("width-of-fixed-point", small=True)
+class _WidthOfFixedPoint(Port):
+    """The width is cut to a 64th of a pixel, as a fixed-point point size is."""
 
     def width(self, d: Floats) -> Floats:
-        return super().width(d).astype(np.float16).astype(np.float64)
+        return np.floor(64.0 * super().width(d)) / 64.0
 
 
 @LAW.add("beta-too-large", small=True)
