@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 import numba
@@ -10,8 +11,18 @@ import pytest
 LONGEST = ("tests/test_notebooks.py", "tests/test_determinism.py", "tests/test_memory.py")
 
 
+@pytest.hookimpl(tryfirst=True)  # before pytest chooses by marks
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest first: one that begins when the others are done leaves all cores but its own idle."""
+    """Of what is `sampled` all but every n-th is `long`; and the longest first.
+
+    One that begins when the others are done leaves all cores but its own idle.
+    """
+    seen: Counter[str] = Counter()
+    for item in items:
+        sampled, name = item.get_closest_marker("sampled"), item.nodeid.partition("[")[0]
+        if sampled is not None and seen[name] % sampled.args[0]:
+            item.add_marker("long")
+        seen[name] += 1
     items.sort(key=lambda item: not item.nodeid.startswith(LONGEST))
 
 

@@ -35,6 +35,8 @@ class Way:
     """Empty: all."""
 
 
+pytestmark = pytest.mark.long
+
 WAYS = {
     "two threads": Way({"NUMBA_NUM_THREADS": "2"}, {"threads": 2, "serial": False, "compiled": True}),
     "bounds checked, for a generic processor": Way(

@@ -35,6 +35,7 @@ def test_frame_is_golden(name: str) -> None:
     assert not changed, f"{name}: {changed} changed; if that was meant: python -m tests.golden --write"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", [name for name in golden.SCENES if name not in WITHOUT_TWIN])
 def test_scene_agrees_with_the_naive_twin(name: str) -> None:
     """On a smaller picture."""

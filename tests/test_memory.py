@@ -43,6 +43,7 @@ def printed(*arguments: str) -> str:
     return result.stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kept", ["picture", "stages"])
 def test_a_frame_of_4096_x_4096_stays_under_4_gib(kept: str) -> None:
     assert int(printed("-c", SCRIPT + PEAK, kept)) < 4 * GIB
@@ -59,6 +60,7 @@ except SystemExit as end:
 """
 
 
+@pytest.mark.long
 def test_a_float_height_map_of_8192_x_8192_stays_under_2_gib(tmp_path: Path) -> None:
     rows = np.linspace(0, 1, 8192, dtype=np.float32)
     with (tmp_path / "a.pfm").open("wb") as file:
@@ -68,6 +70,7 @@ def test_a_float_height_map_of_8192_x_8192_stays_under_2_gib(tmp_path: Path) -> 
     assert int(printed("-c", LARGE_MAP + PEAK, str(tmp_path / "a.pfm"), str(tmp_path / "a.png"))) < 2 * GIB
 
 
+@pytest.mark.long
 def test_50_million_points_stay_under_8_gib() -> None:
     """64 references of 1024 x 768, their own 1.6 GiB included; and a frame takes 4 bytes a point, its pixel's number, and
     no more that grows with them.
@@ -78,6 +81,7 @@ def test_50_million_points_stay_under_8_gib() -> None:
     assert found["peak"] - found["made"] < 4 * found["points"] + GIB // 8
 
 
+@pytest.mark.long
 def test_50_million_points_with_all_stages_stay_under_8_gib() -> None:
     """An eighth of them here, in an eighth of the memory. All 64: `python -m tests.splatting.many_points 64 stages`, which
     has its peak at 6.9 GiB.

@@ -43,6 +43,7 @@ def test_is_stored_without_outputs(path: Path) -> None:
     assert notebook.metadata.kernelspec.name == "python3"
 
 
+@pytest.mark.long
 def test_runs_and_shows_a_page(path: Path) -> None:
     import nbformat
     from nbclient import NotebookClient

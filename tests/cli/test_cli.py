@@ -232,6 +232,7 @@ def test_an_error_in_a_pipe_is_one_line_too(tmp_path: Path) -> None:
     assert "nowhere.png" in result.stderr
 
 
+@pytest.mark.long
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from ibr_ref.bench import displacement
 
@@ -245,6 +246,7 @@ def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert 0 < row["picture_best_ms"] <= row["picture_median_ms"]
 
 
+@pytest.mark.long
 def test_demo_makes_all_pictures(run: Run, tmp_path: Path) -> None:
     from ibr_ref import methods
 

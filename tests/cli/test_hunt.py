@@ -34,6 +34,7 @@ def soon_over(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ibr_ref.testing.hunting.SHRINKING", 1.0)
 
 
+@pytest.mark.long
 def test_a_bug_is_a_case_from_then_on(run: Run, port: str, tmp_path: Path, one_thread: None) -> None:
     out = tmp_path / "bugs"
     code, said, err = run("hunt", "--port", port, "--method", "displacement", "--seconds", 2, "--out", out)

@@ -183,6 +183,7 @@ def test_quality_by_hand() -> None:
     assert metrics.soft_difference(0.0 * ours, 0.0 * ours) == 0.0
 
 
+@pytest.mark.long
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bench, "SIZES", (64,))
     code, out, err = run("bench", "shadows", "--repeat", "1", "--json", tmp_path / "times.json")

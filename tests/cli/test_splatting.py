@@ -81,6 +81,7 @@ def test_the_loop_in_software_draws_the_same(run: Run, cube: Path, tmp_path: Pat
     assert np.array_equal(*pictures)
 
 
+@pytest.mark.long
 @real_data
 def test_photographs(run: Run, tmp_path: Path) -> None:
     folder = REAL / "breakdancers"
@@ -166,6 +167,7 @@ def test_psnr_by_hand() -> None:
     assert metrics.psnr(truth, truth, where) == np.inf
 
 
+@pytest.mark.long
 def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from ibr_ref.bench import splatting
 
@@ -180,6 +182,7 @@ def test_bench_writes_json(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert row["picture_mpps"] == pytest.approx(row["points"] / row["picture_best_ms"] / 1e3)
 
 
+@pytest.mark.long
 @real_data
 def test_bench_prints_the_quality_of_the_views(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The figures that the README gives, as the issue of this method asks for them."""

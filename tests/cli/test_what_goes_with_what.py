@@ -75,6 +75,7 @@ def test_view_has_the_rules_of_render() -> None:
             assert list(seen[param].alternatives) == kept, param
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", [name for name in COMMANDS if not name.startswith("view ")])
 def test_every_option_beside_every_mode(name: str) -> None:
     """Read or refused as the table says, written out here a second time; each rule is kept and broken by some mode."""

@@ -104,6 +104,7 @@ def test_repeat_needs_the_base_face(faces: str, method: str) -> None:
         render(scene, Params(faces=faces, method=method))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("method", ["relief", "texture", *COMPARED])
 def test_methods_on_the_base_alone_take_repeat_whatever_the_faces(method: str) -> None:
     render(Scene(polygons=[TILED], camera=camera(), light=LIGHT), Params(method=method))

@@ -119,6 +119,7 @@ def outcome(case: oracle.Case, scene: Scene) -> Outcome:
     ).verdict.outcome
 
 
+@pytest.mark.long
 def test_the_oracle_judges_it(case: oracle.Case, tmp_path: Path) -> None:
     """What is expected passes, and a right port; one that takes the heights as they were given fails."""
     oracle.export(case, tmp_path / "case")

@@ -431,6 +431,7 @@ def test_a_jpeg_header_that_claims_much(tmp_path, monkeypatch):
         assert peak(lambda: check_refused(io.read_image, tmp_path / "a.jpg")) < 2**20
 
 
+@pytest.mark.long
 def test_a_bomb_stays_small(tmp_path):
     """Some 2^30 bytes of pixels in 1 MB, for an image of 2 x 2: no more is inflated than is needed."""
     path = tmp_path / "a.png"

@@ -254,6 +254,7 @@ def rig_digest() -> str:
     return digest(*(array for image in rig for array in image.arrays), *(m for pair in cameras for m in pair))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("switches", [{"NUMBA_NUM_THREADS": "1"}, {"NUMBA_NUM_THREADS": "2"}], ids=["one", "two"])
 def test_bits_do_not_depend_on_the_number_of_threads(switches: dict[str, str]) -> None:
     command = [sys.executable, "-c", "from tests.models import test_depth_rig as t; print(t.rig_digest())"]

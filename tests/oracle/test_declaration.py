@@ -105,6 +105,7 @@ def test_a_right_port_of_four_bits_passes(name: str) -> None:
     assert "would be right with subpixel_bits=4: declare it if your device has it." in failed.words()
 
 
+@pytest.mark.long
 def test_a_right_port_that_filters_bytes_in_bytes_passes() -> None:
     case, arrays = drawn("displacement-low", Policy(filtered_bytes=True, weight_bits=8))
     found = oracle.examine(case, arrays).verdict

@@ -18,6 +18,7 @@ from tests.oracle.tiny_cases import TINY, handed_of
 EACH = 6
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", TINY)
 def test_whole_arrays_replaced_are_an_answer_and_never_pass_where_it_shows(name: str) -> None:
     block = [*TINY].index(name) * (1 + len(TINY) * 2)  # of several profiles
@@ -28,6 +29,7 @@ def test_whole_arrays_replaced_are_an_answer_and_never_pass_where_it_shows(name:
     assert [words for _, words in found if words is not None] == []
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("change", ["zeros", "constant", "scaled by 1e-4", "moved", "NaN", "1e30", "infinity"])
 @pytest.mark.parametrize("array", ["warp.grid", "warp.row_grids"])
 def test_a_grid_that_covers_nothing(array: str, change: str) -> None:

@@ -174,6 +174,7 @@ def case() -> Case:
     return oracle.build(CASE)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", SABOTAGE)
 def test_the_right_answer(name: str, case: Case, tmp_path: Path) -> None:
     outcome, words, make = SABOTAGE[name]

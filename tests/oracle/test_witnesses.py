@@ -70,6 +70,7 @@ def spoiled(array: Any, random: np.random.Generator) -> tuple[int, ...]:
     return index if page_ is None else (page_, *index)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", TINY)
 def test_one_wrong_element_of_any_array_heads_its_witness(name: str) -> None:
     """In the right place, with what the arrays have there."""

@@ -51,6 +51,7 @@ def assert_passes(examination: Examination) -> None:
 REAL_SIZED = ("displacement-metropolis", "splatting-kettle", "shadows-stage")
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", [name for name in oracle.names() if name not in REAL_SIZED])
 def test_the_port_passes(name: str, device: Any, tmp_path: Path) -> None:
     examination = examined(oracle.build(name), device, tmp_path)
@@ -63,6 +64,7 @@ def test_the_port_passes(name: str, device: Any, tmp_path: Path) -> None:
     print(f"\n{name}: {verdict.profile}, {share}, median widths up to {width:.1g}; {device.renderer}")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", REAL_SIZED)
 def test_the_port_passes_in_real_size(name: str, device: Any, tmp_path: Path) -> None:
     """By what it declares: all stages everywhere, and every eighth row and column of the picture by itself,
@@ -165,6 +167,7 @@ BROKEN = {
 """One deliberate edit each: the case, the file, what is replaced by what, and the stage in which it must be found."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mistake", BROKEN)
 def test_a_broken_port_fails_in_the_right_stage(
     mistake: str, device: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

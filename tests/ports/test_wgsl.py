@@ -38,6 +38,7 @@ def device(request: pytest.FixtureRequest) -> Any:
         pytest.skip(str(error))
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", CASES)
 def test_the_port_passes(name: str, device: Any) -> None:
     """With all stages, as WebGPU declares itself."""

@@ -61,6 +61,7 @@ def test_steps_have_names_of_their_own_and_tables_and_figures_are_all_there() ->
     assert {"table-1", "tables-2-3-5", "table-4", "figure-4", "figure-7", "figure-8", "figures-9-12"} <= set(names)
 
 
+@pytest.mark.long
 def test_times_stand_beside_the_papers(tmp_path: Path) -> None:
     one = ran(times.table_1, tmp_path).tables[0]
     assert [row[:3] for row in one.rows][:2] == [("kettle", 12, "16²"), ("kettle", 12, "32²")]
@@ -95,6 +96,7 @@ def test_quality_by_hand() -> None:
     assert quality.grey_share(np.array([[1.0, 0.5, 0.05, 0.95]])) == pytest.approx(1 / 3)
 
 
+@pytest.mark.long
 def test_qualities(tmp_path: Path) -> None:
     maps = ran(quality.maps_quality, tmp_path)
     values = np.array([row[1:] for row in maps.tables[0].rows], np.float64)

@@ -78,6 +78,7 @@ def test_controls_do_not_depend_on_what_the_maps_hold() -> None:
     assert deep.controls.tobytes() == chair_maps("fast").controls.tobytes()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("size", "rows", "columns"), [(8, 2, 2), (8, 15, 5), (16, 2, 7), (9, 6, 2), (24, 3, 3), (32, 40, 3)]
 )
@@ -119,6 +120,7 @@ def test_where_no_map_has_a_silhouette_points_are_simple() -> None:
         assert made.choice.chosen.mean == 1.0
 
 
+@pytest.mark.long
 def test_grids_of_very_many_points_are_placed_simply() -> None:
     many = params(map_size=32, rows=90, columns=50)
     made = prepare(scene(), many, controls="best")

@@ -13,6 +13,7 @@ WITH_DATA = pytest.mark.skipif(
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "controls", "samples", "mean", "worst"),
     [
@@ -31,6 +32,7 @@ def test_warped_maps_are_the_rendered_ones(name: str, controls: str, samples: in
     assert found[1] >= worst, found
 
 
+@pytest.mark.long
 @WITH_DATA
 def test_soft_shadows_are_nearer_than_those_of_1024_maps() -> None:
     scenes = quality.stages("cow", quality.SOFT_OFFSETS)

@@ -86,6 +86,7 @@ def test_drawn_scenes_cover_every_feature(one_thread: None) -> None:
     assert not rare, f"of {seen['scenes']} scenes too few show: {rare}"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("content", ["mask", "depth"])
 @pytest.mark.parametrize(
     "method",

@@ -80,6 +80,7 @@ def quality(given: Scene, parameters: Params, made: Maps, count: int = 16) -> fl
     return float(np.mean(found))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fov", [14.0, 17.0])
 def test_a_shadow_across_the_map_s_border_is_registered(fov: float) -> None:
     """Lines of the silhouette's box mark other parts of the caster where the border cuts it."""
@@ -122,6 +123,7 @@ def test_that_nothing_good_was_found_is_part_of_the_maps() -> None:
     assert made.choice.chosen.mean < 0.5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("reach", [0.05, 0.001])
 def test_a_small_range_is_served_no_worse_than_by_simple_grids(reach: float) -> None:
     """Where all are as good as each other "best" is one of them, to the bit."""

@@ -58,6 +58,7 @@ def test_samples_converge_to_the_area_light() -> None:
     assert found[256] < 0.012, found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["chair", "kettle"])
 def test_samples_of_a_real_caster_converge_and_the_warp_stays_off(name: str) -> None:
     seen = models.shadow_stage(getattr(models, name)(), offset=(0.31, -0.24), width=64, height=48)

@@ -42,6 +42,7 @@ def test_a_right_port_is_right_on_them(method: str, one_thread: None) -> None:
     assert len(shown) > len(seen) / 4
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method", methods.names())
 def test_random_devices_are_right_on_them(method: str, one_thread: None) -> None:
     """Lights in the polygon's plane, slivers without an area, axes along the view: what no built-in case has."""
@@ -75,6 +76,7 @@ def test_of_one_system(method: str, system: str, one_thread: None) -> None:
     settings(QUIET, max_examples=3)(seed(5)(given(cases(method, system))(right)))()
 
 
+@pytest.mark.long
 def test_they_shrink_to_a_pixel(one_thread: None) -> None:
     chosen = settings(QUIET, phases=[Phase.generate, Phase.shrink])
     case = find(cases("displacement"), lambda case: bool((case.frame.depth < 1.0).any()), settings=chosen)

@@ -67,6 +67,7 @@ def hunt(draw: Callable[[Case], dict[str, Any]], **more: Any) -> Hunt:
     return Hunt(port=drawing(draw), methods=("displacement",), **options)
 
 
+@pytest.mark.long
 def test_a_bug_is_found_and_made_small() -> None:
     chase = hunt(steep)
     (found,) = chase.run(40)
@@ -79,6 +80,7 @@ def test_a_bug_is_found_and_made_small() -> None:
     assert not [*hunt(steep, known={STEEP}).run(15)]
 
 
+@pytest.mark.long
 def test_two_bugs_are_two() -> None:
     found = [each.bug for each in hunt(steep_and_clip, shrinking=5.0).run(60)]
     assert sorted(found) == [STEEP, CLIP]
@@ -119,12 +121,14 @@ def test_arrays_that_are_all_right_make_a_right_picture() -> None:
     assert bug_of(case, drawing(lambda case: wrong), None) == Bug("displacement", "shade", "color")
 
 
+@pytest.mark.long
 def test_a_right_port_has_none_and_the_time_is_kept() -> None:
     chase = hunt(reference)
     assert not [*chase.run(20)]
     assert 15 <= chase.tried <= 20
 
 
+@pytest.mark.long
 def test_it_goes_on_with_what_failed_before(tmp_path: Path) -> None:
     """The example that was being made smaller is the first that is tried next time."""
     first = next(iter(hunt(steep, database=tmp_path, shrinking=3.0).run(30)))  # and is ended there

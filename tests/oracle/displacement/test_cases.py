@@ -25,6 +25,7 @@ def test_every_kind_and_the_profiles_are_there() -> None:
     assert {"ieee32", "vulkan", "gl"} <= {each.profile for each in cases}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", CASES)
 def test_hardly_a_pixel_is_undecided_and_the_reference_passes(name: str) -> None:
     device = PROFILES[case(name).profile]

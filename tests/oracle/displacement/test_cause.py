@@ -55,6 +55,7 @@ def named(name: str, arrays: Arrays) -> list[str]:
     return [cause.name for cause in found.causes]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("mutant", STAGED)
 def test_the_bug_is_named(mutant: str) -> None:
     name = "displacement-slope"
@@ -62,6 +63,7 @@ def test_the_bug_is_named(mutant: str) -> None:
     assert mutant in named(name, draw(name, Policy(), port))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("name", "taken"),
     [
@@ -140,6 +142,7 @@ def named_by_the_picture(name: str, arrays: Arrays) -> list[str]:
     return [cause.name for cause in found.causes]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mutant", PICTURED)
 def test_a_picture_by_itself_names_the_bug(mutant: str) -> None:
     name = "displacement-slope"
@@ -147,6 +150,7 @@ def test_a_picture_by_itself_names_the_bug(mutant: str) -> None:
     assert mutant in named_by_the_picture(name, image(draw(name, Policy(), port)))
 
 
+@pytest.mark.long
 def test_nor_has_it_by_the_picture() -> None:
     name = "displacement-slope"
     assert named_by_the_picture(name, image(draw(name, Policy(), _Unknown))) == []

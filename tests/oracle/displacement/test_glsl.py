@@ -42,6 +42,7 @@ def port() -> Iterator[Port]:
         pytest.skip(f"no headless OpenGL 4.5: {error}")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", [f"displacement-{name}" for name in COVERED])
 def test_the_port_passes(port: Port, name: str) -> None:
     assert name in SMALL

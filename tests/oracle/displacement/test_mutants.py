@@ -67,6 +67,7 @@ def pictured(name: str, arrays: Arrays) -> bool:
     return bool(REFEREE.judge_image(case(name), PROFILES[case(name).profile], shown(arrays)).wrong.any())
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SMALL)
 def test_the_plain_port_is_right(name: str) -> None:
     """What a mutant shares with it is not judged again."""
@@ -75,6 +76,7 @@ def test_the_plain_port_is_right(name: str) -> None:
     assert not wrong([REFEREE.judge_image(case(name), device, shown(plain(name)))])
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("mutant", [m for m in MUTANTS if not m.survives], ids=lambda mutant: mutant.name)
 def test_a_bug_is_found_where_it_is(mutant: Mutant) -> None:
     found = fate(mutant, by_picture=mutant in PICTURED)

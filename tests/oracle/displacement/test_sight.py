@@ -47,6 +47,7 @@ def test_a_random_colour_is_wrong(name: str, profile: str) -> None:
     assert accepted(name, profile, color=random) <= 0.01 * count
 
 
+@pytest.mark.long
 def test_the_magenta_city_fails_by_every_profile() -> None:
     """194 pixels of a small picture of it; undeclared, as the tightest device that explains it is sought."""
     city = case("displacement-city")

@@ -70,6 +70,7 @@ def test_the_terms_of_a_colour_make_it() -> None:
         assert rows.get("the wall faces along", "u") in ("u", "v")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", TRACED)
 def test_every_stage_can_be_traced_everywhere(name: str) -> None:
     arrays = reference(name)

@@ -30,6 +30,7 @@ PAIRS = [
 ]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("variant", "name"), PAIRS, ids=lambda each: getattr(each, "name", each))
 def test_variants_pass(variant: Variant, name: str) -> None:
     """With their tightest profile stage by stage, and by their pictures; every third by the loosest's as well."""
@@ -66,6 +67,7 @@ def test_other_ways_through_a_quadtree_pass(port: type[Port]) -> None:
     assert not wrong([REFEREE.judge_image(case(name), PROFILES["gl"], image(arrays))])
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("seed", "name"), list(enumerate(SMALL)))
 def test_random_devices_escape_no_accepted_set(seed: int, name: str) -> None:
     """By the picture, and, each other case, stage by stage."""

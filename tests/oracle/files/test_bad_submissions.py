@@ -153,6 +153,7 @@ def test_a_member(maps_case: Case, tmp_path: Path, way: str) -> None:
     assert not damage.Ran.count
 
 
+@pytest.mark.long
 def test_an_archive_that_inflates(maps_case: Case, tmp_path: Path) -> None:
     data = damage.header("<f8", f"({2**25},)") + bytes(2**28)
     path = archive_of(tmp_path / "all.npz", {"depth.npy": data})

@@ -127,6 +127,7 @@ def test_a_mutant_goes_wrong_where_it_says(mutant: Mutant) -> None:
         assert all(d.max() < BYTE or (d > ROUNDING).mean() < 0.01 for d in seen)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["nearest", "deep", "direct"])
 def test_no_mutant_goes_wrong_before_its_stage(name: str) -> None:
     for mutant in MUTANTS:

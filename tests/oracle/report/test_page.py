@@ -164,6 +164,7 @@ def noisy(examination: Examination) -> Examination:
     return dataclasses.replace(examination, handed=handed)
 
 
+@pytest.mark.long
 def test_a_page_stays_small(failed: Examination) -> None:
     """Of 640 x 480 random pixels three megabytes, and whatever fits of the numbers."""
     camera = dataclasses.replace(failed.case.scene.camera, width=640, height=480, intrinsics=None)

@@ -48,11 +48,13 @@ def broken(name: str, mutant: str) -> Arrays:
     return drawn(name, port=next(m.port for m in MUTANTS if m.name == mutant))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("mutant", STAGED)
 def test_the_bug_is_named(mutant: str) -> None:
     assert named(STAGED[mutant], broken(STAGED[mutant], mutant)) == [mutant]
 
 
+@pytest.mark.long
 def test_the_bug_is_named_by_the_picture_alone() -> None:
     assert named(BOX, picture(broken(BOX, "resolve-bgr"))) == ["resolve-bgr"]
 
@@ -65,6 +67,7 @@ def taken(other: Case) -> Arrays:
     return Port(other.scene, other.params, Policy(), other.inputs).render()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("name", "other", "says"),
     [

@@ -142,6 +142,7 @@ def test_a_fault_is_found_where_it_is(fault: Callable[[Arrays], None], stage: st
     assert any(row.note == "differs" for row in rows), rows
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "name",
     [SOFT, DIRECT, "shadows-filtered", "shadows-depths", "shadows-nearest", "shadows-many", "shadows-penumbra"],

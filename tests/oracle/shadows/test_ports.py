@@ -28,6 +28,7 @@ PAIRS = [(name, v) for i, v in enumerate(VARIANTS) for j, name in enumerate(SMAL
 """Each variant on every sixth case, each case by every sixth variant; `ibr-ref check --self-test` tries all on all."""
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("name", "variant"), PAIRS, ids=lambda each: getattr(each, "name", each))
 def test_no_legal_variant_is_accused(name: str, variant: Variant) -> None:
     arrays = drawn(name, variant.policy, variant.port or Port)
@@ -35,6 +36,7 @@ def test_no_legal_variant_is_accused(name: str, variant: Variant) -> None:
     assert complaints([*stages(name, arrays, variant.profile), *alone]) == []
 
 
+@pytest.mark.long
 def test_no_legal_variant_is_accused_in_real_size() -> None:
     arrays = drawn(REAL)
     assert complaints([*stages(REAL, arrays, "ieee32"), image(REAL, picture(arrays), "ieee32")]) == []
@@ -62,6 +64,7 @@ def _verdict(mutant: Mutant, name: str, stage: str | None, seen: bool) -> tuple[
     return stage, seen
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda m: m.name)
 def test_a_bug_that_should_be_killed_is(mutant: Mutant) -> None:
     stage, _ = verdicts()[mutant.name]
@@ -79,6 +82,7 @@ def test_nearly_all_bugs_are_killed_and_named() -> None:
     assert len(unseen) <= HIDDEN * len(shown), unseen
 
 
+@pytest.mark.long
 def test_a_million_pixels_of_random_devices_are_all_accepted() -> None:
     random = np.random.default_rng(20)
     pixels, widths = 0, []
@@ -94,6 +98,7 @@ def test_a_million_pixels_of_random_devices_are_all_accepted() -> None:
     assert np.median(widths) < 1e-3, "the accepted sets are too wide to say anything"
 
 
+@pytest.mark.long
 def test_random_devices_pass_stage_by_stage() -> None:
     random = np.random.default_rng(21)
     for name in SMALL:

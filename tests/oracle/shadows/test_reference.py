@@ -16,6 +16,7 @@ from tests.oracle.judgements import complaints, in_bytes, picture
 from tests.oracle.shadows.judged import REAL, REFEREE, SMALL, case, image, reference, stages
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("name", SMALL)
 def test_the_reference_passes_under_every_profile(name: str, profile: str) -> None:
@@ -28,6 +29,7 @@ def test_the_reference_passes_under_every_profile(name: str, profile: str) -> No
     assert complaints(stages(name, handed | in_bytes(handed), profile)[-1:]) == []
 
 
+@pytest.mark.long
 def test_the_reference_passes_in_its_real_size() -> None:
     assert complaints([*stages(REAL, reference(REAL)), image(REAL, picture(reference(REAL)))]) == []
 

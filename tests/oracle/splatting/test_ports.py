@@ -33,6 +33,7 @@ def test_no_legal_variant_is_accused(variant: Variant, name: str) -> None:
     assert complaints([*stages(name, arrays, variant.profile), *alone]) == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("variant", VARIANTS[:3], ids=lambda v: v.name)
 def test_no_legal_variant_is_accused_in_real_size(variant: Variant) -> None:
     arrays = drawn(REAL, variant.policy, variant.port or Port)
@@ -96,6 +97,7 @@ def same(a: Any, b: Any) -> bool:
     return isinstance(a, np.ndarray) and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda m: m.name)
 def test_a_bug_that_should_be_killed_is(mutant: Mutant) -> None:
     stage, seen = verdict(mutant)

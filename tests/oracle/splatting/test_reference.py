@@ -25,6 +25,7 @@ def test_the_reference_passes_under_every_profile(name: str, profile: str) -> No
     assert complaints([image(name, arrays, profile) for arrays in (picture(handed), in_bytes(handed))]) == []
 
 
+@pytest.mark.long
 def test_the_reference_passes_in_its_real_size() -> None:
     assert complaints([*stages(REAL, reference(REAL)), image(REAL, picture(reference(REAL)))]) == []
 
