@@ -1,6 +1,6 @@
 """All verdicts written down, to compare before a rewrite of the oracle with after it.
 
-    python -m tests.oracle.frozen_verdicts write before.jsonl [--method splatting] [--kinds easy,typical,adversarial] [--every 60]
+    python -m tests.oracle.frozen_verdicts write before.jsonl [--method splatting] [--kinds easy,typical] [--every 60]
     python -m tests.oracle.frozen_verdicts compare before.jsonl after.jsonl
 
 A line for each case and port (every variant and every mutant), with the stages that each device profile finds wrong and in
