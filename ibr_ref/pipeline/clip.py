@@ -83,13 +83,12 @@ def _needs_guard(polygon, count, guard_x, guard_y):
 @device
 def _clip_polygon(polygon, spare, guard_x, guard_y):
     """Clip the triangle in `polygon[:3]` in place, an even number of cuts; the number of vertices left (0: nothing)."""
-    count = _cut(_NEAR, polygon, 3, spare, guard_x, guard_y)
-    count = _cut(_FAR, spare, count, polygon, guard_x, guard_y)
-    if _needs_guard(polygon, count, guard_x, guard_y):
-        count = _cut(_LEFT, polygon, count, spare, guard_x, guard_y)
-        count = _cut(_RIGHT, spare, count, polygon, guard_x, guard_y)
-        count = _cut(_BOTTOM, polygon, count, spare, guard_x, guard_y)
-        count = _cut(_TOP, spare, count, polygon, guard_x, guard_y)
+    count, here, there = 3, polygon, spare
+    for plane in range(_TOP + 1):  # a plane that is known at compile time is compiled for by itself, six times all
+        if plane == _LEFT and not _needs_guard(polygon, count, guard_x, guard_y):
+            break
+        count = _cut(plane, here, count, there, guard_x, guard_y)
+        here, there = there, here
     return count
 
 
