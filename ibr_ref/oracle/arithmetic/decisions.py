@@ -112,4 +112,4 @@ def joined(parts: list[Any]) -> Any:
 
     names = all_of(*(part.names for part in parts))
     rows = np.concatenate([over_symbols(part.rows, part.names, names) for part in parts], axis=1)
-    return Number.of_rows(parts[0].ops, rows, names, None)
+    return Number.of_rows(parts[0].do, rows, names, None)

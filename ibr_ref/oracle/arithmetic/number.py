@@ -30,13 +30,13 @@ class _Speaks:
     """NumPy's functions, by the tables of numpy_names.py."""
 
     __slots__ = ()
-    ops: Bounds
+    do: Bounds
 
     def __array_function__(self, function: Any, types: Any, arguments: Any, named: Any) -> Any:
-        return self.ops.functions[function](self.ops, *arguments, **named)
+        return self.do.functions[function](self.do, *arguments, **named)
 
     def __array_ufunc__(self, function: Any, method: str, *arguments: Any, **named: Any) -> Any:
-        return self.ops.ufuncs[function](self.ops, *arguments)
+        return self.do.ufuncs[function](self.do, *arguments)
 
 
 class Number(_Speaks):
@@ -45,15 +45,15 @@ class Number(_Speaks):
     `lane` (n,) says which run each row belongs to (None: to all).
     """
 
-    __slots__ = ("lane", "names", "ops", "rows")
+    __slots__ = ("do", "lane", "names", "rows")
     __array_priority__ = 1000
 
     def __init__(
-        self, ops: Any, value: Any, error: Any = 0.0, slopes: dict[str, Any] | None = None, lane: Any = None
+        self, do: Any, value: Any, error: Any = 0.0, slopes: dict[str, Any] | None = None, lane: Any = None
     ) -> None:
         """Of a value, and of an error and slopes that broadcast with it."""
         value, error = np.asarray(value, np.float64), np.asarray(error, np.float64)
-        self.ops, self.lane, self.names = ops, lane, tuple(slopes) if slopes else ()
+        self.do, self.lane, self.names = do, lane, tuple(slopes) if slopes else ()
         shape = together(value.shape, error.shape)
         self.rows = np.empty((SLOPES + len(self.names), *shape))
         self.rows[VALUE], self.rows[ERROR], self.rows[DEVIATION] = value, error, error
@@ -63,18 +63,18 @@ class Number(_Speaks):
             deviated(self.rows.reshape(len(self.rows), -1))
 
     @classmethod
-    def of_rows(cls, ops: Any, rows: Floats, names: tuple[str, ...], lane: Any) -> Number:
+    def of_rows(cls, do: Any, rows: Floats, names: tuple[str, ...], lane: Any) -> Number:
         """Of rows as they are."""
         result = cls.__new__(cls)
-        result.ops, result.rows, result.names, result.lane = ops, rows, names, lane
+        result.do, result.rows, result.names, result.lane = do, rows, names, lane
         return result
 
     @classmethod
-    def deviating(cls, ops: Any, rows: Floats, names: tuple[str, ...], lane: Any) -> Number:
+    def deviating(cls, do: Any, rows: Floats, names: tuple[str, ...], lane: Any) -> Number:
         """Of rows whose deviation is filled in."""
         rows = np.ascontiguousarray(rows)  # which reshape then need not copy
         deviated(rows.reshape(len(rows), -1))
-        return cls.of_rows(ops, rows, names, lane)
+        return cls.of_rows(do, rows, names, lane)
 
     @property
     def value(self) -> Any:
@@ -120,18 +120,18 @@ class Number(_Speaks):
 
     def each(self, f: Callable[[Any], Any], lane: Any) -> Number:
         """The same selection of value, error and slopes."""
-        return Number.of_rows(self.ops, np.stack([f(row) for row in self.rows]), self.names, lane)
+        return Number.of_rows(self.do, np.stack([f(row) for row in self.rows]), self.names, lane)
 
     def off_by(self, more: Any) -> Number:
         """With a larger error."""
         rows = np.array(shaped(self.rows, together(self.shape, np.shape(more))))
         rows[ERROR] += more
         rows[DEVIATION] += more
-        return Number.of_rows(self.ops, rows, self.names, self.lane)
+        return Number.of_rows(self.do, rows, self.names, self.lane)
 
     def plus(self, other: Any, sign: float = 1.0) -> Number:
         """The sum or the difference, not rounded."""
-        return self.ops.combined(pairs.plus, self, self.ops.of(other), sign, EXACT)
+        return self.do.combined(pairs.plus, self, self.do.of(other), sign, EXACT)
 
     def absorbed(self, keep: tuple[str, ...] = ()) -> Number:
         """With its symbols, but those to keep, in its error: what leaves a run, for symbols have names within one only."""
@@ -141,7 +141,7 @@ class Number(_Speaks):
         rows = self.rows[[VALUE, ERROR, DEVIATION, *kept]]
         gone = [k for k in range(SLOPES, len(self.rows)) if k not in kept]
         rows[ERROR] += np.abs(self.rows[gone]).sum(axis=0)
-        return Number.of_rows(self.ops, rows, tuple(self.names[k - SLOPES] for k in kept), self.lane)
+        return Number.of_rows(self.do, rows, tuple(self.names[k - SLOPES] for k in kept), self.lane)
 
     # --- As NumPy's arrays are ---------------------------------------------------------------------------------------
 
@@ -154,8 +154,8 @@ class Number(_Speaks):
             return self.each(lambda x: x[index], lane)
         if isinstance(index, np.ndarray) and index.ndim == 1:  # in memory as the rows are, which indexing turns round
             at = np.flatnonzero(index) if index.dtype == np.bool_ else index
-            return Number.of_rows(self.ops, self.rows.take(at, axis=1), self.names, lane)
-        return Number.of_rows(self.ops, self.rows[:, index], self.names, lane)
+            return Number.of_rows(self.do, self.rows.take(at, axis=1), self.names, lane)
+        return Number.of_rows(self.do, self.rows[:, index], self.names, lane)
 
     def __len__(self) -> int:
         return self.rows.shape[1]
@@ -169,7 +169,7 @@ class Number(_Speaks):
         return [self._component(c) for c in range(self.shape[-1])]
 
     def _component(self, c: int) -> Number:
-        return Number.of_rows(self.ops, self.rows[..., c], self.names, self.lane)
+        return Number.of_rows(self.do, self.rows[..., c], self.names, self.lane)
 
     def reshape(self, *shape: Any) -> Number:
         """Of numbers of the whole case."""
@@ -182,8 +182,8 @@ class Number(_Speaks):
     def astype(self, dtype: Any) -> Any:
         """Whole numbers are decided; another float type is a rounding that nowhere falls."""
         if np.dtype(dtype).kind == "i":
-            return self.ops.whole(self).astype(np.int64)
-        return self.ops.rising(lambda v: v.astype(dtype).astype(np.float64), self)
+            return self.do.whole(self).astype(np.int64)
+        return self.do.rising(lambda v: v.astype(dtype).astype(np.float64), self)
 
     def __float__(self) -> float:
         return float(self.value)
@@ -192,37 +192,37 @@ class Number(_Speaks):
         return bool(self != 0.0)
 
     def __neg__(self) -> Number:
-        return self.ops.negative(self)
+        return self.do.negative(self)
 
     def __abs__(self) -> Number:
-        return self.ops.absolute(self)
+        return self.do.absolute(self)
 
     def __pow__(self, exponent: float) -> Any:
         return np.power(self, exponent)  # type: ignore[call-overload]
 
     def __add__(self, other: Any) -> Number:
-        return self.ops.add(self, other)
+        return self.do.add(self, other)
 
     def __sub__(self, other: Any) -> Number:
-        return self.ops.subtract(self, other)
+        return self.do.subtract(self, other)
 
     def __mul__(self, other: Any) -> Number:
-        return self.ops.multiply(self, other)
+        return self.do.multiply(self, other)
 
     def __truediv__(self, other: Any) -> Number:
-        return self.ops.divide(self, other)
+        return self.do.divide(self, other)
 
     def __radd__(self, other: Any) -> Number:
-        return self.ops.add(other, self)
+        return self.do.add(other, self)
 
     def __rsub__(self, other: Any) -> Number:
-        return self.ops.subtract(other, self)
+        return self.do.subtract(other, self)
 
     def __rmul__(self, other: Any) -> Number:
-        return self.ops.multiply(other, self)
+        return self.do.multiply(other, self)
 
     def __rtruediv__(self, other: Any) -> Number:
-        return self.ops.divide(other, self)
+        return self.do.divide(other, self)
 
     # --- Comparisons -------------------------------------------------------------------------------------------------
 
@@ -233,7 +233,7 @@ class Number(_Speaks):
         with np.errstate(invalid="ignore"):
             # Said the other way round: what is no number may be anything.
             may, must = (~(value + off <= 0), value - off > 0) if strict else (~(value + off < 0), value - off >= 0)
-        return Truth(self.ops, may, must, gap.lane, value, off)
+        return Truth(self.do, may, must, gap.lane, value, off)
 
     def __gt__(self, other: Any) -> Truth:
         return self.truth(other, 1.0, True)
@@ -262,11 +262,11 @@ class Truth(_Speaks):
     bound: how far a device may move the margin.
     """
 
-    __slots__ = ("bound", "lane", "margin", "may", "must", "ops", "outcome")
+    __slots__ = ("bound", "do", "lane", "margin", "may", "must", "outcome")
     dtype = np.dtype(np.bool_)
 
-    def __init__(self, ops: Any, may: Any, must: Any, lane: Any, margin: Any = None, bound: Any = None) -> None:
-        self.ops, self.may, self.must, self.lane = ops, np.asarray(may), np.asarray(must), lane
+    def __init__(self, do: Any, may: Any, must: Any, lane: Any, margin: Any = None, bound: Any = None) -> None:
+        self.do, self.may, self.must, self.lane = do, np.asarray(may), np.asarray(must), lane
         self.margin, self.bound = margin, bound
         self.outcome: Any = None
 
@@ -278,16 +278,16 @@ class Truth(_Speaks):
     def decided(self) -> Bools:
         """The outcome of each lane on this path: the same however often it is asked for."""
         if self.outcome is None:
-            self.outcome = self.ops.decide(self)
+            self.outcome = self.do.decide(self)
         return np.asarray(self.outcome, np.bool_)
 
     def _with(self, other: Any, f: Callable[[Any, Any], Any]) -> Truth:
         if isinstance(other, Truth):
-            return Truth(self.ops, f(self._may, other._may), f(self._must, other._must), self.ops.lane(self, other))
+            return Truth(self.do, f(self._may, other._may), f(self._must, other._must), self.do.lane(self, other))
         margin = self.margin
         if margin is not None:  # what is known beside it decides alone, or not at all
             margin = np.where(other, margin, -np.inf) if f is np.logical_and else np.where(other, np.inf, margin)
-        return Truth(self.ops, f(self._may, other), f(self._must, other), self.lane, margin, self.bound)
+        return Truth(self.do, f(self._may, other), f(self._must, other), self.lane, margin, self.bound)
 
     @property
     def _may(self) -> Any:
@@ -308,7 +308,7 @@ class Truth(_Speaks):
 
     def __invert__(self) -> Truth:
         margin = None if self.margin is None else -self.margin
-        return Truth(self.ops, ~self._must, ~self._may, self.lane, margin, self.bound)
+        return Truth(self.do, ~self._must, ~self._may, self.lane, margin, self.bound)
 
     def __bool__(self) -> bool:
         return bool(np.all(self.decided()))

@@ -92,34 +92,34 @@ class Ways(Choices):
 class Explored:
     """The states of searches that were followed already, by keys, each with the number that belongs to it."""
 
-    def __init__(self, ops: Ways) -> None:
-        self.ops = ops
+    def __init__(self, do: Ways) -> None:
+        self.do = do
         self.keys: Ints = np.zeros(0, np.int64)
-        self.x = Number(ops, np.zeros(0), np.zeros(0), {}, np.zeros(0, np.int64))
-        self.counts = np.zeros(len(ops.run.lost), np.int64)
+        self.x = Number(do, np.zeros(0), np.zeros(0), {}, np.zeros(0, np.int64))
+        self.counts = np.zeros(len(do.run.lost), np.int64)
 
     def fresh(self, keys: Ints, x: Any) -> tuple[Ints, Number]:
         """Rows to go on from, and their numbers: of those with one key one, with the bounds of all there ever were."""
-        ops, rows = self.ops, np.argsort(keys, kind="stable")
-        keys, x = keys[rows], ops.of(x)[rows]
+        do, rows = self.do, np.argsort(keys, kind="stable")
+        keys, x = keys[rows], do.of(x)[rows]
         while len(at := np.flatnonzero(_every_other(_pairs(keys)))):
-            x, keys, rows = ops.joined(at, ops.alternatives(x[at], x[at + 1]), x, keys, rows)
+            x, keys, rows = do.joined(at, do.alternatives(x[at], x[at + 1]), x, keys, rows)
         x, new = self._remembered(keys, x)
         new &= self._affordable(x, new)
         return rows[new], x[new]
 
     def _remembered(self, keys: Ints, x: Number) -> tuple[Number, Bools]:
         """Numbers with the bounds of those before, and which are new, or wider."""
-        ops, place = self.ops, np.searchsorted(self.keys, keys)
+        do, place = self.do, np.searchsorted(self.keys, keys)
         new = np.ones(len(keys), np.bool_)
         if len(self.keys):
             new = self.keys[np.minimum(place, len(self.keys) - 1)] != keys
         again, at = np.flatnonzero(~new), place[~new]
         if len(again):
             before = self.x[at]
-            hull = ops.alternatives(before, x[again])
+            hull = do.alternatives(before, x[again])
             new[again] = hull.error > before.error
-            x, self.x = ops.replaced(x, again, hull), ops.replaced(self.x, at, hull)
+            x, self.x = do.replaced(x, again, hull), do.replaced(self.x, at, hull)
         first = np.ones(len(keys), np.bool_)
         first[again] = False
         keys = np.concatenate([self.keys, keys[first]])
@@ -133,8 +133,8 @@ class Explored:
         if x.lane is None:
             return new
         self.counts += np.bincount(x.lane[new], minlength=len(self.counts))
-        self.ops.run.lost |= self.counts > MOST_STATES
-        return np.asarray(~self.ops.run.lost[x.lane], np.bool_)
+        self.do.run.lost |= self.counts > MOST_STATES
+        return np.asarray(~self.do.run.lost[x.lane], np.bool_)
 
 
 def _pairs(keys: Ints) -> Bools:

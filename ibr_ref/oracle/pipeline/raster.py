@@ -63,14 +63,14 @@ class Fragments:
         """Some of them."""
         return Fragments(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
 
-    def shares(self, ops: Bounds, lane: Ints, middle: Floats, half: Floats) -> list[Number]:
+    def shares(self, do: Bounds, lane: Ints, middle: Floats, half: Floats) -> list[Number]:
         """Weights where the box's part around `middle` (n, 2), in units of `moved`, is `half` (n, 2) as large."""
         found = []
         for i in range(3):
             along = self.gradient[:, i] * self.moved[:, None]
             value = self.weights[:, i] + (along * middle).sum(axis=1)
             slopes = {"x": along[:, 0] * half[:, 0], "y": along[:, 1] * half[:, 1]}
-            found.append(ops.named(f"share {i}", Number(ops, value, self.rounding[:, i], slopes, lane)))
+            found.append(do.named(f"share {i}", Number(do, value, self.rounding[:, i], slopes, lane)))
         return found
 
 

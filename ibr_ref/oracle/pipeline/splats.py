@@ -82,7 +82,7 @@ def recut(program: Any, points: Drawn) -> Drawn:
     They lie where they did, and the quad's depth is theirs, but for the roundings of x, y or z, and of w, at each of two
     borders, and one quotient. A piece covers pixels' centres: none is narrower than half a pixel across the border.
     """
-    camera, device = program.scene.camera, points.depth.ops.device
+    camera, device = program.scene.camera, points.depth.do.device
     if not device.clip_border:
         return points
     window, unit = [], (2.0 * CUTS * CROSSING * device.operation + device.quotient) * UNIT
@@ -91,9 +91,9 @@ def recut(program: Any, points: Drawn) -> Drawn:
         reaches |= (x.low - half < 0.0) | (x.high + half > size)
     for x, size in zip(points.window, (camera.width, camera.height), strict=True):
         off = np.where(reaches, unit * (np.abs(x.value) + 0.5 * size), 0.0)
-        window.append(Number(x.ops, x.value, x.deviation + off))
+        window.append(Number(x.do, x.value, x.deviation + off))
     off = np.where(reaches, unit * np.abs(points.depth.value), 0.0)
-    depth = Number(points.depth.ops, points.depth.value, points.depth.deviation + off)
+    depth = Number(points.depth.do, points.depth.value, points.depth.deviation + off)
     return replace(points, window=window, depth=depth)
 
 
@@ -133,7 +133,7 @@ def contest(program: Any, points: Drawn) -> Contest:
 
 def _ends(span: tuple[Number, Number]) -> tuple[Ints, Ints, Ints, Ints]:
     """The first pixel that may be covered, the one after the last; and the same of those that certainly are."""
-    first, end = (x.ops.of(x) for x in span)
+    first, end = (x.do.of(x) for x in span)
     found = (np.ceil(first.low), np.floor(end.high), np.floor(first.high), np.ceil(end.low))
     a, b, c, d = (np.nan_to_num(x).astype(np.int64) for x in found)
     return a, b, c, d
@@ -197,12 +197,12 @@ def _tested(program: Any, pairs: Pairs, twins: Ints | None, depth: Number, least
         places, starts, many = places[left], starts[left], many[left]
         here, old = starts + turn, winner[places]
         new = pairs.splat[here]
-        ops, alike = depth.ops, (old >= 0) & (names[new] == names[old])  # equal, whatever they are
+        do, alike = depth.do, (old >= 0) & (names[new] == names[old])  # equal, whatever they are
         value, error = (
             np.where(old >= 0, x[old], nothing) for x, nothing in ((depth.value, 1.0), (depth.deviation, 0.0))
         )
-        mine = Number(ops, np.where(alike, value, depth.value[new]), np.where(alike, 0.0, depth.deviation[new]))
-        truth = program.passes(mine, Number(ops, value, np.where(alike, 0.0, error)))
+        mine = Number(do, np.where(alike, value, depth.value[new]), np.where(alike, 0.0, depth.deviation[new]))
+        truth = program.passes(mine, Number(do, value, np.where(alike, 0.0, error)))
         may, must = may_and_must(truth)
         must = must & pairs.certain[here]
         fewest[places] += may_and_must(program.counted(must))[0] & known[places] & pairs.certain[here]

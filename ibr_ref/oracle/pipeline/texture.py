@@ -14,13 +14,13 @@ from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.arithmetic.symbols import all_of, over_symbols
 
 
-def texel_position(ops: Bounds, coordinate: Number, size: int) -> Number:
+def texel_position(do: Bounds, coordinate: Number, size: int) -> Number:
     """Where a coordinate lies, in texels from the first one's centre, with the rounding of weights."""
-    x = ops.subtract(ops.multiply(coordinate, float(size)), 0.5)
-    return x.off_by(ops.device.weight_step)
+    x = do.subtract(do.multiply(coordinate, float(size)), 0.5)
+    return x.off_by(do.device.weight_step)
 
 
-def fetch(ops: Bounds, texture: Texture, x: Number, y: Number) -> Number:
+def fetch(do: Bounds, texture: Texture, x: Number, y: Number) -> Number:
     """(n,) or (n, C) at texel positions. Where their box reaches into other cells: all that is found there, no slopes."""
     off_x, off_y = (np.where(np.isfinite(c.deviation), c.deviation, 1e9) for c in (x, y))
     at_x, at_y = (np.clip(np.where(np.isfinite(c.value), c.value, 0.0), -1e9, 1e9) for c in (x, y))
@@ -43,19 +43,19 @@ def fetch(ops: Bounds, texture: Texture, x: Number, y: Number) -> Number:
         largest[cut] = texture.largest
         for s in slopes.values():
             s[cut] = 0.0
-    return Number(ops, value, error + filter_error(texture, ops.device, largest), slopes, ops.lane(x, y))
+    return Number(do, value, error + filter_error(texture, do.device, largest), slopes, do.lane(x, y))
 
 
-def below_highest(ops: Bounds, texture: Texture, u: Number, v: Number, h: Number) -> Ints:
+def below_highest(do: Bounds, texture: Texture, u: Number, v: Number, h: Number) -> Ints:
     """The samples (u, v, h) that are not certainly above every texel that a fetch there may see."""
-    off = 2.0 * ops.device.operation * UNIT  # of u W and of - 0.5, relative to u W, or to 0.5 where that is less
+    off = 2.0 * do.device.operation * UNIT  # of u W and of - 0.5, relative to u W, or to 0.5 where that is less
     texels, sure = [], np.ones(h.shape, np.bool_)
     for c, size in ((u, texture.texels.shape[1]), (v, texture.texels.shape[0])):
         x = c.value * size
-        sure &= c.deviation * size + off * (np.abs(x) + 1.0) + ops.device.weight_step < 1.0
+        sure &= c.deviation * size + off * (np.abs(x) + 1.0) + do.device.weight_step < 1.0
         texels.append(np.floor(np.clip(np.nan_to_num(x), -1e9, 1e9)).astype(np.int64))
     # A fetch at x takes the texels floor(x - 0.5) and the next one, so those within 1 of floor(x); off by one, within 2.
     most = Texture(texture.extremes(2)[1], texture.repeat).at(texels[1], texels[0])
-    most = most + filter_error(texture, ops.device, texture.largest)
+    most = most + filter_error(texture, do.device, texture.largest)
     with np.errstate(invalid="ignore"):
         return np.flatnonzero(~(sure & (h.low > most)))

@@ -29,7 +29,7 @@ def judged(element: Ints, agrees: Sequence[Bools], count: int) -> tuple[Bools, A
     return right, blame
 
 
-def stored(ops: Bounds, values: Any, own: Number | None = None) -> Number:
+def stored(do: Bounds, values: Any, own: Number | None = None) -> Number:
     """What was handed in, as the port computed with it: rounded to a float32 at most once where it was stored.
 
     A port that computes with more digits, or whose compiler keeps more in a register, hands in float32 all the same.
@@ -39,15 +39,15 @@ def stored(ops: Bounds, values: Any, own: Number | None = None) -> Number:
     rounded = np.isfinite(values)
     if own is not None:
         rounded &= (own.deviation != 0.0) | (own.value != values)
-    return Number(ops, values, np.where(rounded, ops.device.operation * UNIT * np.abs(values), 0.0))
+    return Number(do, values, np.where(rounded, do.device.operation * UNIT * np.abs(values), 0.0))
 
 
-def converted(ops: Bounds, values: Floats) -> Number:
+def converted(do: Bounds, values: Floats) -> Number:
     """What was handed in of a quotient that the device makes once more before it computes with it.
 
     A texel k / 255, a depth of 24 bits: the one that was handed in is a quotient of the device's, stored; the one that was
     computed with is another.
     """
-    number = stored(ops, values)
-    again = 2.0 * ops.device.quotient * UNIT * np.abs(number.value)
+    number = stored(do, values)
+    again = 2.0 * do.device.quotient * UNIT * np.abs(number.value)
     return number.off_by(np.where(number.error > 0.0, again, 0.0))

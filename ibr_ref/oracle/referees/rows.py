@@ -114,7 +114,7 @@ def one(x: Any, index: Any = 0) -> Bounded:
         return Bounded(np.asarray(np.ravel(x)[0]), np.zeros(()), None)  # type: ignore[arg-type]
     value, error = (np.broadcast_to(each, x.shape) for each in (x.value, x.deviation))
     at = index if x.shape else ()
-    return Bounded(np.asarray(value[at]), np.asarray(error[at]), x.ops.device)
+    return Bounded(np.asarray(value[at]), np.asarray(error[at]), x.do.device)
 
 
 def heading(rows: list[TraceRow], array: str) -> TraceRow | None:

@@ -16,14 +16,14 @@ from tests.naive import affine
 COUNT = 60
 
 
-def drawn(ops: Bounds, seed: int, names: str, *, everywhere: bool = False) -> Number:
+def drawn(do: Bounds, seed: int, names: str, *, everywhere: bool = False) -> Number:
     """Large and small numbers, some exact, with slopes along some symbols."""
     random = np.random.default_rng(seed)
     shape = () if everywhere else (COUNT,)
     value = random.normal(0, 1, shape) * 10.0 ** random.integers(-3, 4, shape)
     error = np.abs(value) * 10.0 ** random.uniform(-9, -2, shape)
     slopes = {name: error * random.normal(0, 1, shape) for name in names}
-    return Number(ops, value, error, slopes)
+    return Number(do, value, error, slopes)
 
 
 def one(x: Number, i: int) -> affine.Affine:
@@ -45,15 +45,15 @@ def same(found: Number, expected: Callable[[int], affine.Affine]) -> None:
 @pytest.mark.parametrize("names", [("", ""), ("s", "s"), ("st", "tu"), ("", "u")])
 @pytest.mark.parametrize("everywhere", [False, True])
 def test_operations_are_the_definitions(names: tuple[str, str], everywhere: bool) -> None:
-    ops, units = Bounds(GL), GL.operation
-    x, y = drawn(ops, 1, names[0]), drawn(ops, 2, names[1], everywhere=everywhere)
-    same(ops.add(x, y), lambda i: affine.rounded(affine.plus(one(x, i), one(y, i)), units))
-    same(ops.subtract(x, y), lambda i: affine.rounded(affine.plus(one(x, i), one(y, i), -1.0), units))
-    same(ops.multiply(x, y), lambda i: affine.rounded(affine.times(one(x, i), one(y, i)), units))
-    same(ops.divide(x, y), lambda i: affine.rounded(affine.over(one(x, i), one(y, i)), GL.quotient))
-    same(ops.alternatives(x, y), lambda i: affine.either(one(x, i), one(y, i)))
+    do, units = Bounds(GL), GL.operation
+    x, y = drawn(do, 1, names[0]), drawn(do, 2, names[1], everywhere=everywhere)
+    same(do.add(x, y), lambda i: affine.rounded(affine.plus(one(x, i), one(y, i)), units))
+    same(do.subtract(x, y), lambda i: affine.rounded(affine.plus(one(x, i), one(y, i), -1.0), units))
+    same(do.multiply(x, y), lambda i: affine.rounded(affine.times(one(x, i), one(y, i)), units))
+    same(do.divide(x, y), lambda i: affine.rounded(affine.over(one(x, i), one(y, i)), GL.quotient))
+    same(do.alternatives(x, y), lambda i: affine.either(one(x, i), one(y, i)))
     products = [(x, y), (y, x), (x, x)]
-    found = ops.dot(*zip(*products, strict=True))  # type: ignore[arg-type]
+    found = do.dot(*zip(*products, strict=True))  # type: ignore[arg-type]
     terms = lambda i: [affine.rounded(affine.times(one(a, i), one(b, i)), units) for a, b in products]  # noqa: E731
     same(found, lambda i: affine.total(terms(i), units))
 
@@ -61,9 +61,9 @@ def test_operations_are_the_definitions(names: tuple[str, str], everywhere: bool
 @pytest.mark.parametrize("operation", ["add", "subtract", "multiply", "divide"])
 def test_no_choice_of_symbols_and_errors_leaves_the_result(operation: str) -> None:
     """The exact result of any two numbers that are allowed, rounded to float32, is allowed."""
-    ops, random = Bounds(IEEE32), np.random.default_rng(3)
-    x, y = drawn(ops, 4, "st"), drawn(ops, 5, "tu")
-    found = getattr(ops, operation)(x, y)
+    do, random = Bounds(IEEE32), np.random.default_rng(3)
+    x, y = drawn(do, 4, "st"), drawn(do, 5, "tu")
+    found = getattr(do, operation)(x, y)
     exact: dict[str, Any] = {"add": np.add, "subtract": np.subtract, "multiply": np.multiply, "divide": np.divide}
     for _ in range(50):
         signs = dict(zip("stu", random.uniform(-1, 1, (3, COUNT)), strict=True))
@@ -76,41 +76,41 @@ def test_no_choice_of_symbols_and_errors_leaves_the_result(operation: str) -> No
 
 
 def test_what_is_exact_stays_exact() -> None:
-    ops = Bounds(IEEE32)
-    x = Number(ops, np.float32(np.random.default_rng(6).normal(0, 1, COUNT)))
-    assert ops.multiply(x, 1.0) is x
-    assert ops.add(x, 0.0) is x
-    assert not ops.multiply(x, 0.5).deviation.any()
-    assert not ops.divide(x, 4.0).deviation.any()
-    assert not ops.dot([x, x], [0.0, 1.0]).deviation.any()
-    assert not ops.add(x, -x).value.any()
-    assert not ops.add(x, -x).deviation.any()
+    do = Bounds(IEEE32)
+    x = Number(do, np.float32(np.random.default_rng(6).normal(0, 1, COUNT)))
+    assert do.multiply(x, 1.0) is x
+    assert do.add(x, 0.0) is x
+    assert not do.multiply(x, 0.5).deviation.any()
+    assert not do.divide(x, 4.0).deviation.any()
+    assert not do.dot([x, x], [0.0, 1.0]).deviation.any()
+    assert not do.add(x, -x).value.any()
+    assert not do.add(x, -x).deviation.any()
 
 
 def test_nothing_times_what_has_no_end_may_be_anything() -> None:
-    ops = Bounds(GL)
-    wide = Number(ops, np.zeros(2), [np.inf, 0.0], {"s": np.array([0.0, np.inf])})
-    assert np.isinf(ops.multiply(wide, np.zeros(2)).deviation).all()
-    assert np.isinf(ops.divide(np.ones(2), wide).deviation).all()
+    do = Bounds(GL)
+    wide = Number(do, np.zeros(2), [np.inf, 0.0], {"s": np.array([0.0, np.inf])})
+    assert np.isinf(do.multiply(wide, np.zeros(2)).deviation).all()
+    assert np.isinf(do.divide(np.ones(2), wide).deviation).all()
 
 
 def test_the_same_numbers_in_any_shape() -> None:
     """Columns, views that are not in one piece, and read-only ones."""
-    ops = Bounds(GL)
-    x, y = drawn(ops, 7, "s"), drawn(ops, 8, "st")
-    whole = ops.multiply(x, y)
-    square = ops.multiply(x.reshape(6, 10), y.reshape(6, 10))
+    do = Bounds(GL)
+    x, y = drawn(do, 7, "s"), drawn(do, 8, "st")
+    whole = do.multiply(x, y)
+    square = do.multiply(x.reshape(6, 10), y.reshape(6, 10))
     assert (square.reshape(COUNT).rows == whole.rows).all()
-    assert (ops.multiply(x[::2], y[::2]).rows == whole.rows[:, ::2]).all()
-    column = ops.multiply(x.reshape(6, 10), y.reshape(6, 10)[:, :1])
+    assert (do.multiply(x[::2], y[::2]).rows == whole.rows[:, ::2]).all()
+    column = do.multiply(x.reshape(6, 10), y.reshape(6, 10)[:, :1])
     assert (column.rows[:, :, 0] == square.rows[:, :, 0]).all()
-    wide = ops.in_lanes(y[0], x)
-    assert (ops.multiply(x, wide).rows == ops.multiply(x, y[0]).rows).all()
+    wide = do.in_lanes(y[0], x)
+    assert (do.multiply(x, wide).rows == do.multiply(x, y[0]).rows).all()
 
 
 def test_rows_one_after_the_other_keep_their_runs() -> None:
-    ops = Bounds(GL)
-    parts = [Number(ops, np.arange(3.0), 1.0, {}, np.array(lane)) for lane in ([0, 1, 2], [2, 0, 1])]
+    do = Bounds(GL)
+    parts = [Number(do, np.arange(3.0), 1.0, {}, np.array(lane)) for lane in ([0, 1, 2], [2, 0, 1])]
     both = np.concatenate(parts)  # type: ignore[call-overload]
     assert both.lane.tolist() == [0, 1, 2, 2, 0, 1]
     assert both.value.tolist() == [0.0, 1.0, 2.0, 0.0, 1.0, 2.0]

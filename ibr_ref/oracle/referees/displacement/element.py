@@ -37,7 +37,7 @@ def bounded(field: Any) -> Any:
         value, error = (np.stack(get, axis=-1) for get in zip(*((p.value, p.error) for p in parts), strict=True))
         return Bounded(value, error, parts[0].device)
     if isinstance(field, Number):
-        return Bounded(field.value, np.broadcast_to(field.deviation, field.shape), field.ops.device)
+        return Bounded(field.value, np.broadcast_to(field.deviation, field.shape), field.do.device)
     return field
 
 

@@ -151,7 +151,7 @@ def _agree(color: list[Number], found: Any, at: Any = slice(None)) -> Bools:
     some = [x[at] for x in color]
     value = np.stack([x.value for x in some], axis=-1)
     error = np.stack([np.broadcast_to(x.deviation, x.shape) for x in some], axis=-1)
-    return np.asarray(allows_color(Bounded(value, error, color[0].ops.device), found).all(axis=1), np.bool_)
+    return np.asarray(allows_color(Bounded(value, error, color[0].do.device), found).all(axis=1), np.bool_)
 
 
 def judge_shade(port: Port, hits: Hits, shades: Shades, lit_pixel: Ints, color: list[Number], lost: Ints) -> Verdict:

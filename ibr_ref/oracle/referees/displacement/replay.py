@@ -192,7 +192,7 @@ def _face_depth(known: Points | Hits, pixel: Ints, polygon: Ints, face: Ints | N
         low, high = np.minimum.reduceat(depth.low, first), np.maximum.reduceat(depth.high, first)
         middle = depth.value[first]
         value[found], error[found] = middle[at[found]], np.maximum(high - middle, middle - low)[at[found]]
-    return Number(known.depth.ops, value, error)
+    return Number(known.depth.do, value, error)
 
 
 def raster_field(port: Port, points: Points, name: str) -> Any:

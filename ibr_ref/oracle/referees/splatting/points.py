@@ -93,7 +93,7 @@ def allowed(branches: list[Branch], found: Floats) -> Bools:
     for branch in branches:
         x = branch.color
         # Stored as a float32 once more; what is less than a normal number is 0 where denormals are flushed.
-        legal = Number(x.ops, x.value, x.deviation + UNIT * np.abs(x.value) + TINY)
+        legal = Number(x.do, x.value, x.deviation + UNIT * np.abs(x.value) + TINY)
         agrees |= branch.legal & legal.allows(found).all(axis=1)
     return agrees
 
@@ -153,16 +153,16 @@ def landed(model: Model, points: Table, own: Placed, handed: Handed) -> Placed:
     given = {name: np.asarray(handed[name], np.float64) for name in PLACES if name in handed}
     if not given:
         return own
-    ops, kept = model.machine, np.ones(len(points), np.bool_)
+    do, kept = model.machine, np.ones(len(points), np.bool_)
     for array in given.values():
         kept &= np.isfinite(array.reshape(len(kept), -1)).all(axis=1)
     window, depth, width = own.window, own.depth, own.width
     if "vertex.window" in given:
-        window = [stored(ops, c, x) for c, x in zip(given["vertex.window"].T, own.window, strict=True)]
+        window = [stored(do, c, x) for c, x in zip(given["vertex.window"].T, own.window, strict=True)]
     if "vertex.depth" in given:
-        depth = stored(ops, given["vertex.depth"], own.depth)
+        depth = stored(do, given["vertex.depth"], own.depth)
     if "vertex.width" in given:
-        width = stored(ops, given["vertex.width"], own.width)
+        width = stored(do, given["vertex.width"], own.width)
         kept &= given["vertex.width"] > 0.0
     return Placed(window, depth, width, kept, kept, _twins(model, points, given), own.world)
 

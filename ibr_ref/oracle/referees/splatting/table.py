@@ -68,10 +68,10 @@ class Table:
 
 def table(program: Program, atlas: dict[str, Any], given: list[Codes], handed: Handed) -> Table:
     """All points, with the port's own depths, colours and normals where it handed in an atlas that has them."""
-    ops = program.do
+    do = program.do
     rects = np.asarray(handed.get("atlas.rects", atlas["atlas.rects"]), np.int64)
-    depths = [stored(ops, page) for page in handed.get("atlas.depth", ())]
-    colors = [_texel_color(ops, page) for page in handed.get("atlas.color", ())]
+    depths = [stored(do, page) for page in handed.get("atlas.depth", ())]
+    colors = [_texel_color(do, page) for page in handed.get("atlas.color", ())]
     parts = []
     for number, image in enumerate(program.scene.images):
         rows, columns = np.nonzero(image.arrays[2])
@@ -131,9 +131,9 @@ def on_page(pages: Any, rect: Ints, rows: Ints, columns: Ints) -> bool:
     return bool(y + rows.max(initial=0) < height and x + columns.max(initial=0) < width)
 
 
-def _texel_color(ops: Bounds, texels: Any) -> Number:
+def _texel_color(do: Bounds, texels: Any) -> Number:
     """The port's own colours: of a byte each fetch is a quotient of its own; floats are what they are."""
     texels = np.asarray(texels, np.float64)
     bytes_ = np.rint(255.0 * np.clip(np.nan_to_num(texels), 0.0, 1.0)) / 255.0
-    fetched = ops.widened(ops.texels(bytes_), quotients=1)
-    return ops.where(np.abs(texels - bytes_) <= fetched.error + UNIT * bytes_, fetched, stored(ops, texels))
+    fetched = do.widened(do.texels(bytes_), quotients=1)
+    return do.where(np.abs(texels - bytes_) <= fetched.error + UNIT * bytes_, fetched, stored(do, texels))

@@ -208,4 +208,4 @@ def page_of(pages: Any, index: int, shape: tuple[int, ...]) -> Number:
     value, error = np.full(shape, np.nan), np.zeros(shape)
     value[:rows, :columns] = number.value[:rows, :columns]
     error[:rows, :columns] = number.deviation[:rows, :columns]
-    return Number(number.ops, value, error)
+    return Number(number.do, value, error)
