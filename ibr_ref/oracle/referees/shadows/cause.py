@@ -12,9 +12,10 @@ from ibr_ref.oracle.faults.shadows.hidden import GIVEN
 from ibr_ref.oracle.faults.taken import Setting
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.shadows import Port as Program
-from ibr_ref.oracle.referees.causes import Inquiry, Numbers, explained
+from ibr_ref.oracle.referees.causes import Numbers, explained
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.stages import ARRAYS, PARTS, PIXELS, Replay, part_of
+from ibr_ref.oracle.referees.suspects import Inquiry
 
 FIRST = {stage: part for part, (stage, _, _) in reversed(PARTS.items())}
 """Of each stage the first part: from there on its bugs are tried."""
@@ -68,8 +69,8 @@ def _numbers(right: Inputs, handed: Handed) -> Numbers:
 
 
 def _inquiry(right: Inputs) -> Inquiry:
-    def replay(kind: type[Any], among: Bools | None) -> Replay:
-        return Replay(replace(right, kind=kind, among=among, right=right))
+    def replay(kind: type[Any], among: Bools | None, *, thorough: bool) -> Replay:
+        return Replay(replace(right, kind=kind, among=among, right=right, thorough=thorough))
 
     sampled: Collection[str] = PIXELS
     # A picture is made with the maps that the case hands over.

@@ -11,9 +11,10 @@ from ibr_ref.oracle.faults.splatting import MUTANTS
 from ibr_ref.oracle.faults.taken import Setting
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.splatting import Port as Program
-from ibr_ref.oracle.referees.causes import Inquiry, Numbers, explained
+from ibr_ref.oracle.referees.causes import Numbers, explained
 from ibr_ref.oracle.referees.splatting.model import Model, model_of
 from ibr_ref.oracle.referees.splatting.stages import ARRAYS, SAMPLED, Stages
+from ibr_ref.oracle.referees.suspects import Inquiry
 
 LAW = ("alpha", "beta", "gamma", "delta")
 """Numbers of the widths' law."""
@@ -63,7 +64,7 @@ def _numbers(case: Case, handed: Handed, stage: str) -> Numbers:
 def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
     right = Stages(model_of(case, device), handed)
 
-    def replay(kind: type[Any], among: Bools | None) -> Stages:
-        return Stages(Model(case, device, kind, right.port.model), handed, among, right)
+    def replay(kind: type[Any], among: Bools | None, *, thorough: bool) -> Stages:
+        return Stages(Model(case, device, kind, right.port.model), handed, among, right, thorough=thorough)
 
     return Inquiry(mutants=MUTANTS, arrays={**ARRAYS, "image": ()}, replay=replay, sampled=SAMPLED)
