@@ -20,9 +20,10 @@ from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.faults.kinds import Mutant, PlainPort
 from ibr_ref.oracle.faults.taken import LOOKS_LIKE, Setting, suspects
+from ibr_ref.oracle.faults.vectors import Vector
 from ibr_ref.oracle.findings import Cause
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
-from ibr_ref.oracle.referees.fitted import fitted
+from ibr_ref.oracle.referees.fitted import fitted, fitted_vector
 from ibr_ref.oracle.referees.pairs import Likely, causes_of, named_together, together
 from ibr_ref.oracle.referees.suspects import MOST_ROWS, Inquiry, Suspects
 
@@ -43,14 +44,16 @@ class Numbers:
     """The right program."""
     settings: Sequence[Setting]
     handed: Handed
+    vectors: Sequence[Vector] = ()
     draw: Callable[[Any, Bools], Mapping[str, Any]] = lambda program, among: program.render()
     """A program's arrays, at least where elements are looked at."""
     evidence: int = EVIDENCE
     """Wrong elements from which on a number is believed."""
 
     def listed(self) -> list[Mutant]:
-        """The right program with numbers that ports have by mistake."""
-        return suspects(self.port, self.case, self.settings)
+        """The right program with numbers and vectors that ports have by mistake."""
+        of_vectors = [mutant for vector in self.vectors for mutant in vector.listed(self.port)]
+        return [*suspects(self.port, self.case, self.settings), *of_vectors]
 
     def fitting(self, wrong: Judgement) -> Iterator[list[list[Mutant]]]:
         """And with those that its results look like: of each number some values, those of the fewest digits first."""
@@ -62,6 +65,8 @@ class Numbers:
             among = every if setting.jumps else some
             values = self._fitted(setting, wrong, among, first[setting.jumps])
             yield [setting.suspects(self.port, self.case, value, LOOKS_LIKE) for value in values]
+        for vector in self.vectors:
+            yield [vector.suspects(self.port, value, LOOKS_LIKE) for value in self._vectors(vector, wrong, some)]
 
     def recognizes(self, inquiry: Inquiry, wrong: Judgement, name: str) -> bool:
         """Whether the bug or the number of that name explains every element of a stage."""
@@ -72,6 +77,7 @@ class Numbers:
             if value and setting.name == told
             for mutant in setting.suspects(self.port, self.case, float(value), LOOKS_LIKE)
         ]
+        found += [mutant for vector in self.vectors for mutant in vector.of_name(self.port, name)]
         every, by = [*inquiry.mutants, *self.listed(), *found], Suspects(inquiry, wrong)
         alone = (mutant for mutant in every if mutant.name == name)
         return any(by.explains(mutant, None) for mutant in (*alone, *named_together(inquiry, self.port, every, name)))
@@ -85,6 +91,15 @@ class Numbers:
         target, slack = _row(self.handed, names, among), _slack(self.handed, names, among)
         with np.errstate(all="ignore"):
             return fitted(float(setting.value(self.case)), first, draw, target, slack, jumps=setting.jumps)
+
+    def _vectors(self, vector: Vector, wrong: Judgement, among: Bools) -> list[Floats]:
+        def draw(value: Floats) -> Floats | None:
+            return self._drawn(vector.port(self.port, value), wrong, among) if vector.allows(value) else None
+
+        names = self._compared(wrong)
+        target, slack = _row(self.handed, names, among), _slack(self.handed, names, among)
+        with np.errstate(all="ignore"):
+            return fitted_vector(vector.value, draw, target, slack)
 
     def _drawn(self, kind: type[Any], wrong: Judgement, among: Bools) -> Floats:
         """(n,) what a program makes of a stage, in doubles."""

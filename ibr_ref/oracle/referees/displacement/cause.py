@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.displacement import MUTANTS
+from ibr_ref.oracle.faults.displacement.vectors import lit_from, seen_from
 from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.faults.taken import Setting
+from ibr_ref.oracle.faults.vectors import Vector
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.programs.displacement.raster import Raster
@@ -80,8 +83,39 @@ def _numbers(case: Case, handed: Handed, stage: str) -> Numbers:
         found: dict[str, Any] = program.render() if stage == "vertex" else program.render(among | program.rows(among))
         return found
 
-    evidence = CORNERS if stage == "vertex" else EVIDENCE
-    return Numbers(case=case, port=Program, settings=settings, handed=handed, draw=draw, evidence=evidence)
+    return Numbers(
+        case=case,
+        port=Program,
+        settings=settings,
+        vectors=_vectors(case),
+        handed=handed,
+        draw=draw,
+        evidence=CORNERS if stage == "vertex" else EVIDENCE,
+    )
+
+
+def _vectors(case: Case) -> list[Vector]:
+    """The light's, everywhere or in colours alone, and the eye that highlights are for."""
+    light, eye = case.scene.light, case.scene.camera.eye
+    place, value = light.position is not None, light.homogeneous[:3]
+    name = "light.position" if place else "light.direction"
+    setting = Setting(path=("scene", "light", name.partition(".")[2]), stages=())
+    of = Vector(
+        name=name,
+        value=value,
+        stages=("shade",),
+        port=setting.port,
+        place=place,
+        others={"the eye": eye[:3]} if place else {},
+        allows=lambda other: setting.allows(case, other),
+    )
+    found = [of, replace(of, name=f"{name} of colours", port=lit_from)] if case.params.shadow_steps else [of]
+    if light.specular and eye[3]:
+        others = {"the light": value} if place else {}
+        found.append(
+            Vector(name="eye of the highlights", value=eye[:3], stages=("shade",), port=seen_from, others=others)
+        )
+    return found
 
 
 def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:

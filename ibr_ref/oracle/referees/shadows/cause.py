@@ -6,10 +6,15 @@ from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from ibr_ref.array_types import Bools
+from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.faults.shadows import MUTANTS
 from ibr_ref.oracle.faults.shadows.hidden import GIVEN
+from ibr_ref.oracle.faults.shadows.vectors import lit_from, turned_to
 from ibr_ref.oracle.faults.taken import Setting
+from ibr_ref.oracle.faults.vectors import Vector
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.shadows import Port as Program
 from ibr_ref.oracle.referees.causes import Numbers, explained
@@ -65,7 +70,37 @@ def _numbers(right: Inputs, handed: Handed) -> Numbers:
         for name in (*light, "vertical_fov")
     ]
     settings = [replace(each, stages=tuple(FIRST[stage] for stage in each.stages)) for each in settings]
-    return Numbers(case=case, port=Program, settings=settings, handed=handed)
+    return Numbers(case=case, port=Program, settings=settings, vectors=_vectors(case, maps), handed=handed)
+
+
+def _vectors(case: Case, maps: str) -> list[Vector]:
+    """The light's, everywhere or in colours alone, and the eye that normals are turned to."""
+    value, eye = np.asarray(case.scene.light.position, np.float64), case.scene.camera.eye
+    setting = Setting(
+        path=("scene", "light", "position"), stages=(), read_by=("light_centre", "caster_clip", "moved_clip")
+    )
+    found = [
+        Vector(
+            name="light.position",
+            value=value,
+            stages=(FIRST[maps], FIRST["project"]),
+            port=setting.port,
+            allows=lambda other: setting.allows(case, other),
+        ),
+        Vector(
+            name="light.position of colours",
+            value=value,
+            stages=(FIRST["resolve"],),
+            port=lit_from,
+            others={"the eye": eye[:3]},
+        ),
+    ]
+    if eye[3]:
+        of_normals = {"the light": value}
+        found.append(
+            Vector(name="eye of normals", value=eye[:3], stages=(FIRST["resolve"],), port=turned_to, others=of_normals)
+        )
+    return found
 
 
 def _inquiry(right: Inputs) -> Inquiry:
