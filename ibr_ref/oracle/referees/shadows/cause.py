@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.array_types import Bools
+from ibr_ref.array_types import Bools, Floats
+from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.faults.shadows import MUTANTS
 from ibr_ref.oracle.faults.shadows.hidden import GIVEN
@@ -79,13 +80,22 @@ def _vectors(case: Case, maps: str) -> list[Vector]:
     setting = Setting(
         path=("scene", "light", "position"), stages=(), read_by=("light_centre", "caster_clip", "moved_clip")
     )
+
+    def allows(other: Floats) -> bool:
+        """Some scenes have the caster on one side of the light."""
+        try:
+            setting.port(Program, other)(case.scene, case.params, Policy(), case.inputs)
+        except ValueError:
+            return False
+        return True
+
     found = [
         Vector(
             name="light.position",
             value=value,
             stages=(FIRST[maps], FIRST["project"]),
             port=setting.port,
-            allows=lambda other: setting.allows(case, other),
+            allows=allows,
         ),
         Vector(
             name="light.position of colours",
