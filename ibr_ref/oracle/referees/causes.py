@@ -24,7 +24,7 @@ from ibr_ref.oracle.faults.vectors import Vector
 from ibr_ref.oracle.findings import Cause
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.referees.fitted import fitted, fitted_vector
-from ibr_ref.oracle.referees.pairs import Likely, causes_of, named_together, together
+from ibr_ref.oracle.referees.pairs import Known, Likely, causes_of, named_together, together
 from ibr_ref.oracle.referees.suspects import MOST_ROWS, Inquiry, Suspects
 
 EVIDENCE = 16
@@ -82,6 +82,16 @@ class Numbers:
         alone = (mutant for mutant in every if mutant.name == name)
         return any(by.explains(mutant, None) for mutant in (*alone, *named_together(inquiry, self.port, every, name)))
 
+    def shows(self, mutant: Mutant, wrong: Judgement) -> bool:
+        """Whether a bug by itself changes results of a stage, as many as are evidence."""
+        every = np.ones_like(wrong.wrong)
+        plain, other = (self._drawn(kind, wrong, every) for kind in (self.port, mutant.port))
+        if plain.shape != other.shape:
+            return True
+        with np.errstate(invalid="ignore"):
+            apart = np.abs(plain - other) > SLACK * UNIT * np.abs(plain)
+        return int(np.count_nonzero(apart | (np.isnan(plain) != np.isnan(other)))) >= self.evidence
+
     def _fitted(self, setting: Setting, wrong: Judgement, among: Bools, first: Floats) -> list[float]:
         def draw(value: float) -> Floats | None:
             allowed = setting.allows(self.case, value)
@@ -138,7 +148,8 @@ def explained(
         return replace(found, causes=tuple(causes))
     stages = {stage for tier in tiers for stage in tier}
     pool = [mutant for mutant in (*inquiry.mutants, *listed) if mutant.stage in stages]
-    return together(suspects, numbers.port, pool, numbers.evidence, likely)
+    known = Known(right=numbers.port, pool=pool, evidence=numbers.evidence, shows=lambda m: numbers.shows(m, wrong))
+    return together(suspects, known, likely)
 
 
 def _first_tier(suspects: Suspects, mutants: Sequence[Mutant], tiers: Sequence[Collection[str]]) -> Explanation:

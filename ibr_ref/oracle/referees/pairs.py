@@ -1,12 +1,13 @@
 """Two bugs together, where no single one explains a stage; and which one comes nearest, where no two do.
 
 A pair is one program: a class that derives from both, so that it is tried where they override different methods. It is
-named only if that leaves no element, and each of the two is needed for as many as no chance explains.
+named only if that leaves no element, each of the two is needed for as many as no chance explains, and shows by itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -30,6 +31,19 @@ class Likely(Protocol):
 
     def __call__(self, suspects: Sequence[Mutant], *, partly: bool) -> Sequence[Mutant]:
         """partly: also those that can explain only a part."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Known:
+    """What two are drawn from, and when they are believed."""
+
+    right: type[PlainPort]
+    """The right program."""
+    pool: Sequence[Mutant]
+    evidence: int
+    """Elements for which each of the two is needed."""
+    shows: Callable[[Mutant], bool]
+    """By itself. What does not may turn another bug into one that is not known: nothing tells the two from that."""
 
 
 def causes_of(mutants: Sequence[Mutant]) -> tuple[Cause, ...]:
@@ -61,27 +75,25 @@ def named_together(inquiry: Inquiry, right: type[PlainPort], mutants: Sequence[M
             yield from filter(None, (_pair(inquiry, right, a, b) for b in others))
 
 
-def together(
-    suspects: Suspects, right: type[PlainPort], pool: Sequence[Mutant], evidence: int, likely: Likely
-) -> Explanation:
-    """The pairs that explain every element of a stage that no single one of the pool does; or the one that leaves least.
-
-    evidence: elements for which each of the two is needed.
-    """
-    limit = suspects.spent + MOST_ROWS
+def together(suspects: Suspects, known: Known, likely: Likely) -> Explanation:
+    """The pairs that explain every element of a stage that no single one of the pool does; or the one that leaves least."""
+    pool, limit = known.pool, suspects.spent + MOST_ROWS
     best = _best(suspects, likely(pool, partly=True), limit)
     found: dict[frozenset[str], Cause] = {}
     for first, left in best:
-        if min(_count(left.nearer), _count(left.wrong & suspects.wrong)) < evidence:
+        if min(_count(left.nearer), _count(left.wrong & suspects.wrong)) < known.evidence:
             continue
         others = {
-            pair: b for b in pool if b is not first and (pair := _pair(suspects.inquiry, right, first, b)) is not None
+            pair: b
+            for b in pool
+            if b is not first and (pair := _pair(suspects.inquiry, known.right, first, b)) is not None
         }
         samples = suspects.samples_of(left.wrong, [left.wrong, left.nearer, ~suspects.wrong])
         survivors, _ = suspects.survivors(likely([*others], partly=False), samples, limit)
         for pair in survivors:
             second = others[pair]
-            if _both_needed(suspects, pair, left, second, evidence):
+            needed = _both_needed(suspects, pair, left, second, known.evidence)
+            if needed and known.shows(first) and known.shows(second):
                 says = f"{first.fault} {second.fault}"
                 found.setdefault(
                     frozenset((first.name, second.name)),

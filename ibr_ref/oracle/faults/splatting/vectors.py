@@ -9,14 +9,16 @@ import numpy as np
 from ibr_ref.array_types import Floats
 from ibr_ref.oracle.programs.splatting.case import Image
 from ibr_ref.oracle.programs.splatting.case import Vector as Components
+from ibr_ref.scene.vectors import unit
 
 
 def lit_from(port: type[Any], place: Floats) -> type[Any]:
-    """A program with another place of the lamp, or another direction (3,)."""
+    """A program with another place of the lamp, or another direction (3,), whose length says nothing."""
 
     class LitFrom(port):  # type: ignore[misc]
         def towards_light(self, world: Components) -> Components:
-            return self.towards(np.append(place, self.scene.light.homogeneous[3]), world)
+            w = self.scene.light.homogeneous[3]
+            return self.towards(np.append(place if w else unit(place), w), world)
 
     return LitFrom
 
