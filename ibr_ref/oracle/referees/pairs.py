@@ -16,12 +16,10 @@ from ibr_ref.array_types import Bools
 from ibr_ref.oracle.faults.kinds import Mutant, PlainPort
 from ibr_ref.oracle.findings import Cause, Nearest
 from ibr_ref.oracle.judgement import Explanation
-from ibr_ref.oracle.referees.suspects import Inquiry, Left, Suspects, ranked
+from ibr_ref.oracle.referees.suspects import MOST_ROWS, Inquiry, Left, Suspects, ranked
 
 PROMISING, FIRST = 12, 3
 """Bugs by the gain at a few elements, and of these by that at some: the last are tried with every other."""
-ROWS = 50_000
-"""Of programs that are run for pairs, forks too; pairs that are not tried by then are not named."""
 AND = " and "
 """Between the names of two bugs."""
 ABOUT = ("taken", "read_by", "_abc_impl")
@@ -79,7 +77,7 @@ def named_together(inquiry: Inquiry, right: type[PlainPort], mutants: Sequence[M
 
 def together(suspects: Suspects, known: Known, likely: Likely) -> Explanation:
     """The pairs that explain every element of a stage that no single one of the pool does; or the one that leaves least."""
-    pool, limit = known.pool, suspects.spent + ROWS
+    pool, limit = known.pool, suspects.spent + MOST_ROWS
     best = _best(suspects, likely(pool, partly=True), limit)
     found: dict[frozenset[str], Cause] = {}
     for first, left in best:

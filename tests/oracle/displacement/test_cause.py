@@ -94,22 +94,18 @@ def test_a_number_that_was_not_guessed_is_found(name: str, value: float, other: 
     assert (told, float(looks_like)) == (name, pytest.approx(value, rel=0.01))
 
 
-@pytest.mark.parametrize(
-    ("a", "b"),
-    [("ambient off by 2 %", "gradient without 1/2"), ("border half a texel inside", "delta in world units")],
-)
-def test_two_bugs_of_which_neither_explains_all_are_named_together(a: str, b: str) -> None:
-    name = "displacement-slope"
+def test_two_bugs_of_which_neither_explains_all_are_named_together() -> None:
+    name, a, b = "displacement-slope", "ambient off by 2 %", "gradient without 1/2"
     kinds = [next(m.port for m in MUTANTS if m.name == each) for each in (a, b)]
     both = draw(name, Policy(), type("_Both", tuple(kinds), {}))
     assert {f"{a} and {b}", f"{b} and {a}"} & {*named(name, both)}
 
 
-@pytest.mark.parametrize("place", [(1.0, 1.5, -1.4), (1.25, -1.5, 1.55)], ids=["listed", "found"])
-def test_another_place_of_the_light_is_named(place: tuple[float, float, float]) -> None:
-    other = with_light(case("displacement-slope"), position=place)
+def test_another_place_of_the_light_is_named() -> None:
+    """Below the polygon, where all such places are the same."""
+    other = with_light(case("displacement-slope"), position=(1.0, 1.5, -1.4))
     found = named("displacement-slope", Port(other.scene, other.params, Policy(), {}).render())
-    assert f"({', '.join(f'{x:g}' for x in place)})" in found[-1]
+    assert "light.position = (1, 1.5, -1.4)" in found
 
 
 def test_what_a_bug_and_a_number_explain_is_named_by_both() -> None:
