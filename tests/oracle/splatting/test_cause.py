@@ -11,8 +11,9 @@ from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.splatting import MUTANTS, Port
-from ibr_ref.oracle.faults.splatting.vectors import seen_from
+from ibr_ref.oracle.faults.splatting.vectors import lit_from, seen_from
 from ibr_ref.oracle.referees.moved import with_light, with_params
+from ibr_ref.oracle.referees.splatting import cause
 from tests.oracle.judgements import in_bytes, picture
 from tests.oracle.splatting.judged import REFEREE, Arrays, case, drawn
 
@@ -111,6 +112,24 @@ def both(a: str, b: str) -> Arrays:
 def test_two_bugs_of_which_neither_explains_all_are_named_together(a: str, b: str) -> None:
     (found,) = named(both(a, b))
     assert found in (f"{a} and {b}", f"{b} and {a}")
+
+
+def test_two_bugs_of_which_one_does_not_show_are_not_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without beta, β d for β d² is right, and makes of exchanged coefficients another bug, which is none of the two."""
+    name = "splatting-shelves"
+    two = [m for m in MUTANTS if m.name in ("coefficients-backwards", "distance-not-squared")]
+    monkeypatch.setattr(cause, "MUTANTS", two)
+    arrays = drawn(name, port=next(m.port for m in MUTANTS if m.name == "delta-times-distance"))
+    wrong = next(j for j in REFEREE.judge_stages(case(name), IEEE32, arrays, to_first_wrong=True) if j.wrong.any())
+    found = REFEREE.causes(case(name), IEEE32, arrays, wrong)
+    assert found is not None
+    assert found.causes == ()
+
+
+def test_a_directions_length_says_nothing() -> None:
+    name = "splatting-quads"
+    arrays = drawn(name, port=lit_from(Port, 3.0 * np.asarray(case(name).scene.light.direction)))
+    assert not any(j.wrong.any() for j in REFEREE.judge_stages(case(name), IEEE32, arrays))
 
 
 def test_a_pair_is_recognized() -> None:
