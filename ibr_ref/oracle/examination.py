@@ -101,6 +101,7 @@ def examine(
         fields["needs"] = needed(case, handed, trial, limits=explanation is not None and not explanation.causes)
         if explanation is not None:
             fields |= {"causes": explanation.causes, "suspects": explanation.given_up_after}
+            fields["nearest"] = explanation.nearest
         if image is not None and image.wrong.any():
             fields["conventions"] = conventions(case, trial.device, handed, int(image.wrong.sum()))
     else:
@@ -149,6 +150,7 @@ def _summary(
         median_width=_median(judgement.width),
         witness=_witness(case, device, handed, judgement) if len(wrong) else None,
         causes=None if explanation is None else explanation.causes,
+        nearest=None if explanation is None else explanation.nearest,
     )
 
 

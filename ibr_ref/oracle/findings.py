@@ -65,7 +65,21 @@ class Cause(_Record):
 
     name: str
     says: str
-    """What such a port does, in a sentence."""
+    """What such a port does, in a sentence; of two bugs in two."""
+    together: tuple[str, ...] = ()
+    """The names of two of them of which neither explains it alone; empty: it is one."""
+
+
+class Nearest(_Record):
+    """Where nothing known explains a stage: the bug, or the number, whose program leaves the fewest elements unexplained."""
+
+    name: str
+    says: str
+    left: int
+    """Elements that it leaves, of all that are judged."""
+    element: str
+    index: tuple[int, ...]
+    """Of the first that it leaves."""
 
 
 class StageVerdict(_Record):
@@ -90,6 +104,8 @@ class StageVerdict(_Record):
     """Of a wrong stage."""
     causes: tuple[Cause, ...] | None = None
     """Known bugs that explain a wrong stage; None where none was looked for."""
+    nearest: Nearest | None = None
+    """Where none does."""
 
     @property
     def right(self) -> bool:
@@ -144,6 +160,8 @@ class Findings(_Record):
     causes: tuple[Cause, ...] | None = None
     """Known bugs that explain the stage; several: this case does not tell them apart; none: no known one does. None where
     none was looked for."""
+    nearest: Nearest | None = None
+    """Where none does, and one explains a part of it."""
     suspects: int | None = None
     """How many known bugs were tried before the search was ended for what it costs, so that others may explain the stage
     too; None where all were."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
-from ibr_ref.oracle.findings import Cause
+from ibr_ref.oracle.findings import Cause, Nearest
 
 Handed = Mapping[str, Any]
 """A port's arrays by their names in the contract, checked for shape and dtype: "color" (H, W, 3) uint8 or floats, "depth",
@@ -138,7 +138,9 @@ class Explanation:
 
     causes: tuple[Cause, ...]
     given_up_after: int | None = None
-    """After how many suspects the search was ended for what it costs; None: all were tried."""
+    """After how many suspects the search was ended for what it costs; None: all were tried, each by itself."""
+    nearest: Nearest | None = None
+    """Where there are no causes, what leaves least."""
 
 
 @runtime_checkable

@@ -6,7 +6,7 @@ from collections import Counter
 from itertools import groupby
 
 from ibr_ref.oracle.device import spelled
-from ibr_ref.oracle.findings import Findings, Outcome, StageVerdict, Witness
+from ibr_ref.oracle.findings import Findings, Nearest, Outcome, StageVerdict, Witness
 from ibr_ref.oracle.referees.rows import DIFFERS
 
 MOST_LINES = 30
@@ -49,13 +49,24 @@ def _causes(verdict: Findings) -> list[str]:
         return []
     ended = [] if verdict.suspects is None else [f"  Stopped looking for the bug after {verdict.suspects} suspects."]
     if not verdict.causes:
-        return ended or ["  No known bug and no number of the case explains all of it."]
+        return ended or ["  No known bug and no number of the case explains all of it.", *_nearest(verdict.nearest)]
     if len(verdict.causes) == 1:
         (cause,) = verdict.causes
         alone = "" if ended else ", and by no other"
-        return [f"  Explained by a known cause{alone}: {cause.name}. {cause.says}", *ended]
-    lines = [f"  Explained by {len(verdict.causes)} known causes, which this case does not tell apart:"]
+        known = "two bugs together, by neither alone" if cause.together else f"a known cause{alone}"
+        return [f"  Explained by {known}: {cause.name}. {cause.says}", *ended]
+    known = "pairs of bugs" if verdict.causes[0].together else "known causes"
+    lines = [f"  Explained by {len(verdict.causes)} {known}, which this case does not tell apart:"]
     return lines + [f"    {cause.name}: {cause.says}" for cause in verdict.causes] + ended
+
+
+def _nearest(found: Nearest | None) -> list[str]:
+    """What explains a part, and where it does not."""
+    if found is None:
+        return []
+    first = f"{found.element} {list(found.index)}"
+    left = first if found.left == 1 else f"{found.left:,}, the first {first}"
+    return [f"  {found.name} comes nearest, and leaves {left}. {found.says}"]
 
 
 def _headline(verdict: Findings) -> str:

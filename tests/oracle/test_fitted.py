@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ibr_ref.oracle.referees.fitted import fitted
+from ibr_ref.oracle.referees.fitted import fitted, fitted_vector
 
 X = np.linspace(0.1, 3.0, 97)
 SLACK = np.full(97, 1e-6)
@@ -44,3 +44,22 @@ def test_another_fault(jumps: bool) -> None:
 
 def test_results_of_another_number() -> None:
     assert fitted(1.0, X, power, np.zeros(5), np.zeros(5), jumps=False) == []
+
+
+def towards(place: np.ndarray) -> np.ndarray:
+    """Cosines on a floor, as from a lamp."""
+    at = np.stack([X, X[::-1] ** 2, 0.3 * np.sin(5.0 * X)], axis=1)
+    way = place - at
+    return way[:, 2] / np.linalg.norm(way, axis=1)
+
+
+@pytest.mark.parametrize("place", [(1.2, -0.5, 2.0), (0.7, 0.25, 3.1)])
+def test_a_vector_is_found(place: tuple[float, float, float]) -> None:
+    noise = np.random.default_rng(1).uniform(-1e-7, 1e-7, 97)
+    found = fitted_vector(np.array([1.0, 0.0, 2.0]), towards, towards(np.array(place)) + noise, SLACK)
+    assert any(np.array_equal(each, place) for each in found)
+
+
+def test_no_vector_explains_another_fault() -> None:
+    target = np.random.default_rng(2).uniform(0.0, 1.0, 97)
+    assert fitted_vector(np.array([1.0, 0.0, 2.0]), towards, target, SLACK) == []

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.oracle import report
 from ibr_ref.oracle.examination import Examination, examine
-from ibr_ref.oracle.findings import Outcome, StageVerdict
+from ibr_ref.oracle.findings import Cause, Nearest, Outcome, StageVerdict
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.verdict import Verdict
 from tests.oracle.plain_referee import box_case
@@ -48,3 +49,17 @@ def test_the_first_wrong_part_is_shown() -> None:
     examination = Examination(case=case, handed={}, judgements=judgements, verdict=verdict)
     assert examination.first_wrong is judgements[1]
     assert Examination(case=case, handed={}, judgements=judgements[:1], verdict=verdict).first_wrong is None
+
+
+def test_a_pair_and_what_comes_nearest_are_said() -> None:
+    """In words and on the page."""
+    verdict = Verdict(outcome=Outcome.FAIL, case="a", method="shadows", causes=())
+    near = Nearest(name="bias-sign", says="Minus.", left=1200, element="pixel", index=(3, 4))
+    told = verdict.model_copy(update={"nearest": near})
+    assert "bias-sign comes nearest, and leaves 1,200, the first pixel [3, 4]. Minus." in told.words()
+    pair = Cause(name="a and b", says="A. B.", together=("a", "b"))
+    told = verdict.model_copy(update={"causes": (pair,)})
+    assert "  Explained by two bugs together, by neither alone: a and b. A. B." in told.words()
+    page = report.page(Examination(case=box_case(8, 6), handed={}, judgements=(), verdict=told))
+    assert "Two bugs together: <strong>a and b</strong>" in page
+    assert Verdict.model_validate_json(told.model_dump_json()) == told

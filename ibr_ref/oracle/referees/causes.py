@@ -3,14 +3,14 @@
 A bug is named only if no element contradicts it, and some that is wrong is certainly explained by it. Some dozens of
 elements, right and wrong ones, are tried first; what explains them, on all. The right program with other numbers than the
 case's is tried the same way: those that ports have by mistake, and where nothing explains a stage those that fit its
-results, which the plain program finds.
+results, which the plain program finds. Where none of all these does, two of them may together (`pairs.py`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -20,90 +20,19 @@ from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.faults.kinds import Mutant, PlainPort
 from ibr_ref.oracle.faults.taken import LOOKS_LIKE, Setting, suspects
+from ibr_ref.oracle.faults.vectors import Vector
 from ibr_ref.oracle.findings import Cause
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
-from ibr_ref.oracle.referees.fitted import fitted
+from ibr_ref.oracle.referees.fitted import fitted, fitted_vector
+from ibr_ref.oracle.referees.pairs import Known, Likely, causes_of, named_together, together
+from ibr_ref.oracle.referees.suspects import MOST_ROWS, Inquiry, Suspects
 
-FEW, SOME = 6, 40
-"""Wrong elements that are tried first, up to twice as many; and next, with as many right ones."""
-MOST_ROWS = 100_000
-"""Of programs that are run in all, forks too; what is not tried by then is not named, and the verdict says so."""
 EVIDENCE = 16
 """Of the dozens of numbers that are tried one explains a few elements by chance."""
 LOOKED_AT = 256
 """Wrong elements, and right ones, at which a number is fitted; results that jump are looked at everywhere."""
 SLACK = 16.0
 """How far a port's results may be from the plain ones where a number is fitted, in units of theirs; it is judged after."""
-
-
-class Replay(Protocol):
-    """A port's stages, judged by one program."""
-
-    @property
-    def cost(self) -> int:
-        """Of what was judged so far, setting up and all, in rows of a program as long as a march."""
-
-    def names(self, stage: str) -> tuple[str, ...]:
-        """What of a stage was handed in."""
-
-    def judge(self, stage: str) -> Judgement:
-        """One stage."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Inquiry:
-    """What a method's known bugs are, and how they are judged."""
-
-    mutants: Sequence[Mutant]
-    arrays: Mapping[str, tuple[str, ...]]
-    """For each stage, in the pipeline's order, those that are compared in it; of the last, and of "image", none need be."""
-    replay: Callable[[type[Any], Bools | None], Replay]
-    """By a program, of all elements or of those `among`."""
-    sampled: Collection[str]
-    """The stages of which some elements are sooner judged than all."""
-
-    def before(self, stage: str, mutant: Mutant) -> list[str]:
-        """The stages that a bug may contradict before that one: from its own on. A picture by itself is resolve's too."""
-        order = [*self.arrays]
-        last = order.index("resolve" if stage == "image" else stage)
-        return order[min(order.index(mutant.stage), last) : last]
-
-    def hidden_in(self, stage: str, handed: Handed) -> list[str]:
-        """Stages whose bugs this one may show: those before it of which not all is handed in, up to one that is whole."""
-        order = [*self.arrays]
-        at, found = order.index(stage), []
-        while at and not all(name in handed for name in self.arrays[order[at - 1]]):
-            at -= 1
-            found.append(order[at])
-        return found
-
-    def causes(self, wrong: Judgement, *tiers: Collection[str]) -> Explanation:
-        """The bugs that explain every element of a stage: those of the first of the tiers of stages that has some."""
-        suspects, tried = _Suspects(self, wrong), 0
-        for stages in tiers:
-            left = [m for m in self.mutants if m.stage in stages]
-            for number, sample in enumerate((*suspects.samples(), None)):
-                survivors: list[Mutant] = []
-                for mutant in left:
-                    if suspects.spent >= MOST_ROWS:
-                        found = tuple(survivors) if sample is None else ()
-                        return Explanation(causes=_named(found), given_up_after=tried)
-                    tried += number == 0
-                    if suspects.explains(mutant, sample):
-                        survivors.append(mutant)
-                left = survivors
-            if left:
-                return Explanation(causes=_named(left))
-        return Explanation(causes=())
-
-    def recognizes(self, wrong: Judgement, name: str) -> bool:
-        """Whether the suspect of that name explains every element of a stage; one that there is not explains none."""
-        suspects = _Suspects(self, wrong)
-        return any(suspects.explains(mutant, None) for mutant in self.mutants if mutant.name == name)
-
-
-def _named(mutants: Sequence[Mutant]) -> tuple[Cause, ...]:
-    return tuple({m.name: Cause(name=m.name, says=m.fault) for m in mutants}.values())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,14 +44,16 @@ class Numbers:
     """The right program."""
     settings: Sequence[Setting]
     handed: Handed
+    vectors: Sequence[Vector] = ()
     draw: Callable[[Any, Bools], Mapping[str, Any]] = lambda program, among: program.render()
     """A program's arrays, at least where elements are looked at."""
     evidence: int = EVIDENCE
     """Wrong elements from which on a number is believed."""
 
     def listed(self) -> list[Mutant]:
-        """The right program with numbers that ports have by mistake."""
-        return suspects(self.port, self.case, self.settings)
+        """The right program with numbers and vectors that ports have by mistake."""
+        of_vectors = [mutant for vector in self.vectors for mutant in vector.listed(self.port)]
+        return [*suspects(self.port, self.case, self.settings), *of_vectors]
 
     def fitting(self, wrong: Judgement) -> Iterator[list[list[Mutant]]]:
         """And with those that its results look like: of each number some values, those of the fewest digits first."""
@@ -134,6 +65,8 @@ class Numbers:
             among = every if setting.jumps else some
             values = self._fitted(setting, wrong, among, first[setting.jumps])
             yield [setting.suspects(self.port, self.case, value, LOOKS_LIKE) for value in values]
+        for vector in self.vectors:
+            yield [vector.suspects(self.port, value, LOOKS_LIKE) for value in self._vectors(vector, wrong, some)]
 
     def recognizes(self, inquiry: Inquiry, wrong: Judgement, name: str) -> bool:
         """Whether the bug or the number of that name explains every element of a stage."""
@@ -144,7 +77,20 @@ class Numbers:
             if value and setting.name == told
             for mutant in setting.suspects(self.port, self.case, float(value), LOOKS_LIKE)
         ]
-        return replace(inquiry, mutants=[*inquiry.mutants, *self.listed(), *found]).recognizes(wrong, name)
+        found += [mutant for vector in self.vectors for mutant in vector.of_name(self.port, name)]
+        every, by = [*inquiry.mutants, *self.listed(), *found], Suspects(inquiry, wrong)
+        alone = (mutant for mutant in every if mutant.name == name)
+        return any(by.explains(mutant, None) for mutant in (*alone, *named_together(inquiry, self.port, every, name)))
+
+    def shows(self, mutant: Mutant, wrong: Judgement) -> bool:
+        """Whether a bug by itself changes results of a stage, as many as are evidence."""
+        every = np.ones_like(wrong.wrong)
+        plain, other = (self._drawn(kind, wrong, every) for kind in (self.port, mutant.port))
+        if plain.shape != other.shape:
+            return True
+        with np.errstate(invalid="ignore"):
+            apart = np.abs(plain - other) > SLACK * UNIT * np.abs(plain)
+        return int(np.count_nonzero(apart | (np.isnan(plain) != np.isnan(other)))) >= self.evidence
 
     def _fitted(self, setting: Setting, wrong: Judgement, among: Bools, first: Floats) -> list[float]:
         def draw(value: float) -> Floats | None:
@@ -156,6 +102,15 @@ class Numbers:
         with np.errstate(all="ignore"):
             return fitted(float(setting.value(self.case)), first, draw, target, slack, jumps=setting.jumps)
 
+    def _vectors(self, vector: Vector, wrong: Judgement, among: Bools) -> list[Floats]:
+        def draw(value: Floats) -> Floats | None:
+            return self._drawn(vector.port(self.port, value), wrong, among) if vector.allows(value) else None
+
+        names = self._compared(wrong)
+        target, slack = _row(self.handed, names, among), _slack(self.handed, names, among)
+        with np.errstate(all="ignore"):
+            return fitted_vector(vector.value, draw, target, slack)
+
     def _drawn(self, kind: type[Any], wrong: Judgement, among: Bools) -> Floats:
         """(n,) what a program makes of a stage, in doubles."""
         with np.errstate(all="ignore"):
@@ -166,31 +121,51 @@ class Numbers:
         return [name for name in wrong.arrays if name in self.handed and not isinstance(self.handed[name], tuple)]
 
 
+def _all(suspects: Sequence[Mutant], *, partly: bool) -> Sequence[Mutant]:
+    return suspects
+
+
 def explained(
-    inquiry: Inquiry,
-    numbers: Numbers,
-    wrong: Judgement,
-    *tiers: Collection[str],
-    likely: Callable[[Sequence[Mutant]], Sequence[Mutant]] = lambda suspects: suspects,
+    inquiry: Inquiry, numbers: Numbers, wrong: Judgement, *tiers: Collection[str], likely: Likely = _all
 ) -> Explanation:
-    """The bugs and the numbers that explain every element of a stage.
+    """The bugs and the numbers that explain every element of a stage; where none does, pairs of them, or what comes nearest.
 
-    likely: of suspects those that are worth a judgement.
+    tiers: of stages; those of the first are named that has some.
     """
+    suspects, enough = Suspects(inquiry, wrong), wrong.wrong.sum() >= numbers.evidence
 
-    def tried(suspects: Sequence[Mutant]) -> Explanation:
-        return replace(inquiry, mutants=likely(suspects)).causes(wrong, *tiers)
+    def tried(mutants: Sequence[Mutant]) -> Explanation:
+        return _first_tier(suspects, likely(mutants, partly=False), tiers)
 
     def first(values: Sequence[Sequence[Mutant]]) -> tuple[Cause, ...]:
         return next((causes for each in values if (causes := tried(each).causes)), ())
 
-    found = tried(inquiry.mutants)
-    if wrong.wrong.sum() < numbers.evidence:
-        return found
-    causes = [*found.causes, *tried(numbers.listed()).causes]
-    if not causes:
+    found, listed = tried(inquiry.mutants), numbers.listed() if enough else []
+    causes = [*found.causes, *tried(listed).causes] if enough else [*found.causes]
+    if not causes and enough:
         causes = [cause for values in numbers.fitting(wrong) for cause in first(values)]
-    return replace(found, causes=tuple(causes))
+    if causes or found.given_up_after is not None:
+        return replace(found, causes=tuple(causes))
+    stages = {stage for tier in tiers for stage in tier}
+    pool = [mutant for mutant in (*inquiry.mutants, *listed) if mutant.stage in stages]
+    known = Known(right=numbers.port, pool=pool, evidence=numbers.evidence, shows=lambda m: numbers.shows(m, wrong))
+    return together(suspects, known, likely)
+
+
+def _first_tier(suspects: Suspects, mutants: Sequence[Mutant], tiers: Sequence[Collection[str]]) -> Explanation:
+    """Those of the first tier that has some."""
+    limit, tried = suspects.spent + MOST_ROWS, 0
+
+    def count() -> None:
+        nonlocal tried
+        tried += 1
+
+    for stages in tiers:
+        of_it = [mutant for mutant in mutants if mutant.stage in stages]
+        found, whole = suspects.survivors(of_it, suspects.samples(), limit, count)
+        if found or not whole:
+            return Explanation(causes=causes_of(found), given_up_after=None if whole else tried)
+    return Explanation(causes=())
 
 
 def _spread_out(wrong: Bools) -> Bools:
@@ -222,43 +197,3 @@ def _slack(arrays: Mapping[str, Any], names: Sequence[str], among: Bools) -> Flo
         for x in some
     ]
     return np.concatenate([np.zeros(0), *rows])
-
-
-class _Suspects:
-    """What the programs of bugs make of a port's stage."""
-
-    def __init__(self, inquiry: Inquiry, wrong: Judgement) -> None:
-        self.inquiry, self.stage, self.wrong = inquiry, wrong.stage, wrong.wrong.reshape(-1)
-        self.spent = 0
-
-    def samples(self) -> list[Bools | None]:
-        """A few wrong elements, some with right ones among them."""
-        if self.stage not in self.inquiry.sampled:
-            return []
-        off, on = np.flatnonzero(self.wrong), np.flatnonzero(~self.wrong)
-        few, some = np.zeros((2, len(self.wrong)), np.bool_)
-        few[off[:: max(1, len(off) // FEW)][: 2 * FEW]] = True
-        some[off[:: max(1, len(off) // SOME)][: 2 * SOME]] = True
-        some[on[:: max(1, len(on) // SOME)][: 2 * SOME]] = True
-        return [few, some]
-
-    def explains(self, mutant: Mutant, among: Bools | None) -> bool:
-        """Whether a program contradicts no element `among`; of all elements, it must certainly explain a wrong one too.
-
-        Nor may it in the stages from its bug on: what a wrong program takes for no input at all is not judged.
-        """
-        replay = self.inquiry.replay(mutant.port, among)
-        with np.errstate(all="ignore"):
-            result = self._explained(replay, mutant, among)
-        self.spent += replay.cost
-        return result
-
-    def _explained(self, replay: Replay, mutant: Mutant, among: Bools | None) -> bool:
-        for stage in self.inquiry.before(self.stage, mutant):
-            if replay.names(stage) and replay.judge(stage).wrong.any():
-                return False
-        judgement = replay.judge(self.stage)
-        if judgement.wrong.size != len(self.wrong):  # it has another number of elements
-            return not judgement.wrong.any()
-        sure = among is not None or (self.wrong & ~judgement.undecided.reshape(-1)).any()
-        return bool(sure and not judgement.wrong.any())

@@ -13,6 +13,8 @@ from ibr_ref.array_types import Bools, Floats
 
 Draw = Callable[[float], Floats | None]
 """Results with a value, in a row; None where it is not allowed, or there are others in number."""
+VectorDraw = Callable[[Floats], Floats | None]
+"""The same with a vector (3,)."""
 
 TURNS, EARLY = 8, 2
 """Of Newton's method at most; and after how many a number must have come nearer."""
@@ -30,6 +32,8 @@ NEARER, MOST_LEFT = 0.5, 0.05
 """Of what differed, what is left early and at last: where there is more it is another fault."""
 DOUBLINGS, HALVINGS = 8, 16
 """Of a bound that results jump at; few jump between the last two."""
+HALVED = 4
+"""Times that a step which leads out of what is allowed, or nowhere, is halved."""
 DIGITS = 9
 """Those of a float32."""
 
@@ -73,6 +77,56 @@ def _smooth(start: float, first: Floats, draw: Draw, target: Floats, slack: Floa
     return None
 
 
+def fitted_vector(start: Floats, draw: VectorDraw, target: Floats, slack: Floats) -> list[Floats]:
+    """(3,) what explains the target, rounded to one digit, two and so on; nothing where no vector does.
+
+    By Gauss and Newton; what is far off, beside shadows' borders, counts little.
+    """
+    x, here = np.asarray(start, np.float64), draw(start)
+    if here is None or here.shape != target.shape:
+        return []
+    off = np.isfinite(target - here) & (np.abs(target - here) > slack)
+    before = np.abs(target - here)[off]
+    for turn in range(TURNS):
+        moved = _stepped(x, here, draw, target, slack)
+        if moved is None:  # as near as results of floats lead
+            break
+        x, here = moved
+        if turn >= EARLY and not np.median(np.abs(target - here)[off] / before) < NEARER:
+            return []
+    if not np.median(np.abs(target - here)[off] / before) < MOST_LEFT:
+        return []
+    rounded = (tuple(float(f"{c:.{n}g}") for c in _cleaned(x, n)) for n in range(1, DIGITS + 1))
+    return [np.array(each) for each in dict.fromkeys(rounded)]
+
+
+def _cleaned(x: Floats, digits: int) -> Floats:
+    """A component that is nothing beside the largest is 0."""
+    return np.where(np.abs(x) < 10.0**-digits * np.abs(x).max(), 0.0, x)
+
+
+def _stepped(x: Floats, here: Floats, draw: VectorDraw, target: Floats, slack: Floats) -> tuple[Floats, Floats] | None:
+    """The step that the differences ask for, as far as it comes nearer."""
+    size = STEP * max(np.abs(x).max(), SMALL)
+    moved = [draw(x + size * axis) for axis in np.eye(3)]
+    if any(there is None or there.shape != here.shape for there in moved):
+        return None
+    slopes = np.stack([(there - here) / size for there in moved if there is not None], axis=1)
+    apart = target - here
+    used = np.isfinite(apart) & np.isfinite(slopes).all(axis=1) & (slopes != 0.0).any(axis=1)
+    if np.count_nonzero(used) < x.size:
+        return None
+    scale = np.median(np.abs(apart[used])) + np.median(slack[used])
+    weight = 1.0 / (1.0 + (apart[used] / scale) ** 2)
+    matrix = slopes[used].T * weight
+    step, *_ = np.linalg.lstsq(matrix @ slopes[used], matrix @ apart[used], rcond=None)
+    for halved in range(HALVED):
+        there = draw(x + step / 2**halved)
+        if there is not None and np.median(np.abs(target - there)[used]) <= np.median(np.abs(apart)[used]):
+            return x + step / 2**halved, there
+    return None
+
+
 def _hopeless(apart: Floats, slack: Floats, off: Bools, change: Floats) -> bool:
     """Whether much of what differs hangs on something else, or a first step comes no nearer."""
     if np.count_nonzero(off) < REACHED * np.count_nonzero(np.abs(apart) > slack):
@@ -92,7 +146,7 @@ def _slopes(x: float, here: Floats, draw: Draw) -> Floats | None:
 
 def _moved(x: float, move: float, draw: Draw) -> tuple[float, Floats] | None:
     """A step as far as it is allowed."""
-    for halved in range(4):
+    for halved in range(HALVED):
         there = draw(x + move / 2**halved)
         if there is not None:
             return x + move / 2**halved, there

@@ -96,6 +96,20 @@ def test_a_number_that_was_not_guessed_is_found(name: str, value: float, other: 
     assert (told, float(looks_like)) == (name, pytest.approx(value, rel=0.01))
 
 
+def test_two_bugs_of_which_neither_explains_all_are_named_together() -> None:
+    name, a, b = "displacement-slope", "ambient off by 2 %", "gradient without 1/2"
+    kinds = [next(m.port for m in MUTANTS if m.name == each) for each in (a, b)]
+    both = draw(name, Policy(), type("_Both", tuple(kinds), {}))
+    assert {f"{a} and {b}", f"{b} and {a}"} & {*named(name, both)}
+
+
+def test_another_place_of_the_light_is_named() -> None:
+    """Below the polygon, where all such places are the same."""
+    other = with_light(case("displacement-slope"), position=(1.0, 1.5, -1.4))
+    found = named("displacement-slope", Port(other.scene, other.params, Policy(), {}).render())
+    assert "light.position = (1, 1.5, -1.4)" in found
+
+
 def test_what_a_bug_and_a_number_explain_is_named_by_both() -> None:
     """Of 25 steps the first 24 are those of "step of 1/(N + 1)"; no ray here hits at the last."""
     name = "displacement-relief"

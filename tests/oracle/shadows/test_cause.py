@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.shadows import MUTANTS, Port
+from ibr_ref.oracle.faults.shadows.vectors import lit_from
 from ibr_ref.oracle.programs.shadows.raster import Raster
 from ibr_ref.oracle.referees.moved import with_light, with_params, with_scene
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
@@ -85,6 +87,26 @@ def test_a_right_port_with_another_number_is_named_so(name: str, other: Case, sa
 
 def test_nor_is_one_that_no_suspect_has() -> None:
     assert named(NEAREST, taken(with_params(case(NEAREST), map_samples=7))) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "a", "b"),
+    [
+        (BOX, "resolve-light-from-target", "resolve-five-bits-a-channel"),
+        ("shadows-far", "project-no-bias", "project-r-not-clamped"),
+    ],
+)
+def test_two_bugs_of_which_neither_explains_all_are_named_together(name: str, a: str, b: str) -> None:
+    kinds = [next(m.port for m in MUTANTS if m.name == each) for each in (a, b)]
+    (found,) = named(name, drawn(name, port=type("_Both", tuple(kinds), {})))
+    assert found in (f"{a} and {b}", f"{b} and {a}")
+
+
+@pytest.mark.parametrize("place", [(0.2, 4.0, -0.15), (0.35, -0.2, 3.5)], ids=["listed", "found"])
+def test_the_light_of_colours_alone_is_named(place: tuple[float, float, float]) -> None:
+    (found,) = named(BOX, drawn(BOX, port=lit_from(Port, np.array(place))))
+    assert found.startswith("light.position of colours ")
+    assert found.endswith(f"({', '.join(f'{x:g}' for x in place)})")
 
 
 class _TooWide(Raster):

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.displacement import MUTANTS
+from ibr_ref.oracle.faults.displacement.vectors import lit_from, seen_from
+from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.faults.taken import Setting
+from ibr_ref.oracle.faults.vectors import Vector
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.displacement import Port as Program
 from ibr_ref.oracle.programs.displacement.raster import Raster
 from ibr_ref.oracle.programs.displacement.vertex import Vertex
 from ibr_ref.oracle.programs.program import EACH, overridden
-from ibr_ref.oracle.referees.causes import EVIDENCE, Inquiry, Numbers, explained
-from ibr_ref.oracle.referees.displacement.likely import likely
+from ibr_ref.oracle.referees.causes import EVIDENCE, Numbers, explained
+from ibr_ref.oracle.referees.displacement.likely import LIKE, PARTLY, likely
 from ibr_ref.oracle.referees.displacement.model import Model
 from ibr_ref.oracle.referees.displacement.replay import ARRAYS, Port
 from ibr_ref.oracle.referees.displacement.stages import SAMPLED, Stages
+from ibr_ref.oracle.referees.suspects import Inquiry
 from ibr_ref.searches import SEARCHES
 
 FACES = frozenset(dir(Vertex)) | frozenset(dir(Raster))
@@ -39,9 +45,11 @@ def causes(case: Case, device: Device, handed: Handed, wrong: Judgement) -> Expl
     """
     inquiry, numbers = _inquiry(case, device, handed), _numbers(case, handed, wrong.stage)
     if wrong.stage == "image":
-        return explained(
-            inquiry, numbers, wrong, inquiry.arrays, likely=lambda some: likely(case, handed, wrong.wrong, some)
-        )
+
+        def near(suspects: Sequence[Mutant], *, partly: bool) -> Sequence[Mutant]:
+            return likely(case, handed, wrong.wrong, suspects, PARTLY if partly else LIKE)
+
+        return explained(inquiry, numbers, wrong, inquiry.arrays, likely=near)
     hidden = inquiry.hidden_in(wrong.stage, handed)
     if wrong.stage == "shade" and "color" in wrong.arrays:  # by the depth test another polygon's are shown
         hidden.append("resolve")
@@ -75,14 +83,45 @@ def _numbers(case: Case, handed: Handed, stage: str) -> Numbers:
         found: dict[str, Any] = program.render() if stage == "vertex" else program.render(among | program.rows(among))
         return found
 
-    evidence = CORNERS if stage == "vertex" else EVIDENCE
-    return Numbers(case=case, port=Program, settings=settings, handed=handed, draw=draw, evidence=evidence)
+    return Numbers(
+        case=case,
+        port=Program,
+        settings=settings,
+        vectors=_vectors(case),
+        handed=handed,
+        draw=draw,
+        evidence=CORNERS if stage == "vertex" else EVIDENCE,
+    )
+
+
+def _vectors(case: Case) -> list[Vector]:
+    """The light's, everywhere or in colours alone, and the eye that highlights are for."""
+    light, eye = case.scene.light, case.scene.camera.eye
+    place, value = light.position is not None, light.homogeneous[:3]
+    name = "light.position" if place else "light.direction"
+    setting = Setting(path=("scene", "light", name.partition(".")[2]), stages=())
+    of = Vector(
+        name=name,
+        value=value,
+        stages=("shade",),
+        port=setting.port,
+        place=place,
+        others={"the eye": eye[:3]} if place else {},
+        allows=lambda other: setting.allows(case, other),
+    )
+    found = [of, replace(of, name=f"{name} of colours", port=lit_from)] if case.params.shadow_steps else [of]
+    if light.specular and eye[3]:
+        others = {"the light": value} if place else {}
+        found.append(
+            Vector(name="eye of the highlights", value=eye[:3], stages=("shade",), port=seen_from, others=others)
+        )
+    return found
 
 
 def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
     right = Stages(Port(model=Model(case, device), handed=handed))
 
-    def replay(kind: type[Any], among: Bools | None) -> Stages:
+    def replay(kind: type[Any], among: Bools | None, *, thorough: bool) -> Stages:
         stages = Stages(Port(model=Model(case, device, kind), handed=handed, among=among))
         if _draws_the_same_faces(kind):
             stages.take_fragments(right)

@@ -27,15 +27,20 @@ DEEP = 1.0 / 64.0
 """Of window depth, the same."""
 LIKE = 0.5
 """Of how far off the right program is: a bug that comes no nearer explains something else, or nothing."""
+PARTLY = 0.95
+"""The same for one of two bugs, which comes nearer where the other does not show."""
 MOST = 16
 """Bugs that are judged."""
 
 
-def likely(case: Case, handed: Handed, wrong: Bools, mutants: Sequence[Mutant]) -> list[Mutant]:
-    """Bugs whose pictures come near to the port's at wrong pixels (H, W), the nearest first."""
+def likely(case: Case, handed: Handed, wrong: Bools, mutants: Sequence[Mutant], share: float = LIKE) -> list[Mutant]:
+    """Bugs whose pictures come near to the port's at wrong pixels (H, W), the nearest first.
+
+    share: of how far off the right program is, at most.
+    """
     off, at = np.flatnonzero(wrong), np.zeros(wrong.shape, np.bool_)
     at.reshape(-1)[off[np.linspace(0, len(off) - 1, min(len(off), LOOKED_AT)).astype(np.int64)]] = True
-    limit = LIKE * _apart(case, handed, at, Program)
+    limit = share * _apart(case, handed, at, Program)
     apart = [(_apart(case, handed, at, mutant.port), mutant) for mutant in mutants]
     near = sorted((pair for pair in apart if pair[0] <= limit), key=lambda pair: pair[0])
     return [mutant for _, mutant in near[:MOST]]

@@ -6,15 +6,22 @@ from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
-from ibr_ref.array_types import Bools
+import numpy as np
+
+from ibr_ref.array_types import Bools, Floats
+from ibr_ref.oracle.arithmetic.device import Policy
+from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.faults.shadows import MUTANTS
 from ibr_ref.oracle.faults.shadows.hidden import GIVEN
+from ibr_ref.oracle.faults.shadows.vectors import lit_from, turned_to
 from ibr_ref.oracle.faults.taken import Setting
+from ibr_ref.oracle.faults.vectors import Vector
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.shadows import Port as Program
-from ibr_ref.oracle.referees.causes import Inquiry, Numbers, explained
+from ibr_ref.oracle.referees.causes import Numbers, explained
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.stages import ARRAYS, PARTS, PIXELS, Replay, part_of
+from ibr_ref.oracle.referees.suspects import Inquiry
 
 FIRST = {stage: part for part, (stage, _, _) in reversed(PARTS.items())}
 """Of each stage the first part: from there on its bugs are tried."""
@@ -64,12 +71,51 @@ def _numbers(right: Inputs, handed: Handed) -> Numbers:
         for name in (*light, "vertical_fov")
     ]
     settings = [replace(each, stages=tuple(FIRST[stage] for stage in each.stages)) for each in settings]
-    return Numbers(case=case, port=Program, settings=settings, handed=handed)
+    return Numbers(case=case, port=Program, settings=settings, vectors=_vectors(case, maps), handed=handed)
+
+
+def _vectors(case: Case, maps: str) -> list[Vector]:
+    """The light's, everywhere or in colours alone, and the eye that normals are turned to."""
+    value, eye = np.asarray(case.scene.light.position, np.float64), case.scene.camera.eye
+    setting = Setting(
+        path=("scene", "light", "position"), stages=(), read_by=("light_centre", "caster_clip", "moved_clip")
+    )
+
+    def allows(other: Floats) -> bool:
+        """Some scenes have the caster on one side of the light."""
+        try:
+            setting.port(Program, other)(case.scene, case.params, Policy(), case.inputs)
+        except ValueError:
+            return False
+        return True
+
+    found = [
+        Vector(
+            name="light.position",
+            value=value,
+            stages=(FIRST[maps], FIRST["project"]),
+            port=setting.port,
+            allows=allows,
+        ),
+        Vector(
+            name="light.position of colours",
+            value=value,
+            stages=(FIRST["resolve"],),
+            port=lit_from,
+            others={"the eye": eye[:3]},
+        ),
+    ]
+    if eye[3]:
+        of_normals = {"the light": value}
+        found.append(
+            Vector(name="eye of normals", value=eye[:3], stages=(FIRST["resolve"],), port=turned_to, others=of_normals)
+        )
+    return found
 
 
 def _inquiry(right: Inputs) -> Inquiry:
-    def replay(kind: type[Any], among: Bools | None) -> Replay:
-        return Replay(replace(right, kind=kind, among=among, right=right))
+    def replay(kind: type[Any], among: Bools | None, *, thorough: bool) -> Replay:
+        return Replay(replace(right, kind=kind, among=among, right=right, thorough=thorough))
 
     sampled: Collection[str] = PIXELS
     # A picture is made with the maps that the case hands over.

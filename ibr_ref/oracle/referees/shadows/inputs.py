@@ -64,6 +64,8 @@ class Inputs:
     """(H W,) the pixels of the picture that are looked at; None: all."""
     right: Inputs | None = None
     """By the right program: a program with a bug shares what that does not change."""
+    thorough: bool = False
+    """Also of a program that is contradicted already the rest is looked at."""
     picture: Handed = field(default_factory=dict)
     """What is compared in the end, of a picture that is judged by itself."""
 
@@ -76,7 +78,7 @@ class Inputs:
 
     def refuted(self, right: Bools) -> bool:
         """Whether a known bug is contradicted already, and need not be looked at any further."""
-        if self.right is None:
+        if self.right is None or self.thorough:
             return False
         return not right.all() if self.among is None or right.size != self.among.size else not right[self.among].all()
 

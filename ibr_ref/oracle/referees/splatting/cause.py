@@ -8,12 +8,16 @@ from ibr_ref.array_types import Bools
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.faults.splatting import MUTANTS
+from ibr_ref.oracle.faults.splatting.vectors import lit_from, seen_from
 from ibr_ref.oracle.faults.taken import Setting
+from ibr_ref.oracle.faults.vectors import Vector
 from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
 from ibr_ref.oracle.programs.splatting import Port as Program
-from ibr_ref.oracle.referees.causes import Inquiry, Numbers, explained
+from ibr_ref.oracle.referees.causes import Numbers, explained
 from ibr_ref.oracle.referees.splatting.model import Model, model_of
 from ibr_ref.oracle.referees.splatting.stages import ARRAYS, SAMPLED, Stages
+from ibr_ref.oracle.referees.suspects import Inquiry
+from ibr_ref.scene import Light
 
 LAW = ("alpha", "beta", "gamma", "delta")
 """Numbers of the widths' law."""
@@ -50,6 +54,8 @@ def _numbers(case: Case, handed: Handed, stage: str) -> Numbers:
             for name, method in LIT.items()
         ]
 
+    vectors = [] if light is None else _vectors(case, light)
+
     def draw(program: Any, among: Bools) -> dict[str, Any]:
         codes = case.inputs.get("normals")
         found: dict[str, Any] = (
@@ -57,13 +63,34 @@ def _numbers(case: Case, handed: Handed, stage: str) -> Numbers:
         )
         return found
 
-    return Numbers(case=case, port=Program, settings=settings, handed=handed, draw=draw)
+    return Numbers(case=case, port=Program, settings=settings, vectors=vectors, handed=handed, draw=draw)
+
+
+def _vectors(case: Case, light: Light) -> list[Vector]:
+    """The light's, and the eye that its highlights are for."""
+    eye, place = case.scene.camera.eye, light.position is not None
+    found = [
+        Vector(
+            name="light.position" if place else "light.direction",
+            value=light.homogeneous[:3],
+            stages=("vertex",),
+            port=lit_from,
+            place=place,
+            others={"the eye": eye[:3]} if place else {},
+        )
+    ]
+    if light.specular and eye[3]:
+        others = {"the light": light.homogeneous[:3]} if place else {}
+        found.append(
+            Vector(name="eye of the highlights", value=eye[:3], stages=("vertex",), port=seen_from, others=others)
+        )
+    return found
 
 
 def _inquiry(case: Case, device: Device, handed: Handed) -> Inquiry:
     right = Stages(model_of(case, device), handed)
 
-    def replay(kind: type[Any], among: Bools | None) -> Stages:
-        return Stages(Model(case, device, kind, right.port.model), handed, among, right)
+    def replay(kind: type[Any], among: Bools | None, *, thorough: bool) -> Stages:
+        return Stages(Model(case, device, kind, right.port.model), handed, among, right, thorough=thorough)
 
     return Inquiry(mutants=MUTANTS, arrays={**ARRAYS, "image": ()}, replay=replay, sampled=SAMPLED)

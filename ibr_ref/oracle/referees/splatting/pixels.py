@@ -199,17 +199,18 @@ def colors_of(model: Model, points: Table, placed: Placed, winner: Ints, handed:
 # --- Resolve, and the picture ----------------------------------------------------------------------------------------
 
 
-def judge_image(port: Port, among: Bools | None = None) -> Judgement:
+def judge_image(port: Port, among: Bools | None = None, *, thorough: bool = False) -> Judgement:
     """The picture from the case alone, its points lit with the case's normals, or with the port's own if these are legal.
 
-    among: (H W,) the pixels that are judged, where each hangs on its own winner.
+    among: (H W,) the pixels that are judged, where each hangs on its own winner. thorough: their colours too, where a depth
+    is wrong.
     """
     model, handed = port.model, port.handed
     found = seen(model, model.own, model.own_places)
     if among is not None and model.program.right("read_at"):
         found = replace(found.take(among[found.pixel]), judged=found.judged & among)
         wrong = _without(found.judged, found.pixel[_deep(found, handed)]).reshape(pixels_of(model))
-        if wrong.any():  # before any point is lit
+        if wrong.any() and not thorough:  # before any point is lit
             nothing = np.full(wrong.shape, np.nan)
             return judgement("image", "pixel", {"depth": wrong}, np.zeros(wrong.shape, np.bool_), nothing)
 

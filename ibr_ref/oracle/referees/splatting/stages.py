@@ -27,12 +27,20 @@ START = 100
 class Stages:
     """A port's stages by one program; of normals, points and a picture by itself those `among` alone.
 
-    right: by the right program, where this one has a bug.
+    right: by the right program, where this one has a bug. thorough: also where depths are contradicted points are lit.
     """
 
-    def __init__(self, model: Model, handed: Handed, among: Bools | None = None, right: Stages | None = None) -> None:
+    def __init__(
+        self,
+        model: Model,
+        handed: Handed,
+        among: Bools | None = None,
+        right: Stages | None = None,
+        *,
+        thorough: bool = False,
+    ) -> None:
         self.port: points.Port = points.Port(model, handed, right.port if right else None)
-        self.among = among
+        self.among, self.thorough = among, thorough
 
     @property
     def cost(self) -> int:
@@ -54,6 +62,6 @@ class Stages:
         if stage == "vertex":
             return points.judge_vertex(self.port, self.among)
         if stage == "image":
-            return pixels.judge_image(self.port, self.among)
+            return pixels.judge_image(self.port, self.among, thorough=self.thorough)
         judges = {"atlas": texels.judge_atlas, "raster": pixels.judge_raster, "resolve": pixels.judge_resolve}
         return judges[stage](self.port)
