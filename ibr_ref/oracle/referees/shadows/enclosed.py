@@ -32,7 +32,7 @@ class Enclosed(Port):
     """A program whose blockers and comparisons have bounds as a whole, where no bug changes how they are put together."""
 
     vacant: Bools
-    """(S, S) texels that may be empty, though something may be drawn there."""
+    """(S, S) texels that may be empty, whatever may be drawn there."""
 
     def blocker(self, image: Number, at: Vector) -> Any:
         """(N,) all that the mean of blockers may be; one decision: whether there are any."""
