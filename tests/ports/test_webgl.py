@@ -33,6 +33,7 @@ def drawer() -> Iterator[Any]:
         "splatting-discs",
         "shadows-pace",
         "shadows-nearest",
+        "shadows-penumbra",
     ],
 )
 def test_the_port_passes(name: str, drawer: Any, tmp_path: Path) -> None:
@@ -53,8 +54,10 @@ def test_what_is_not_ported_is_refused_in_a_line(drawer: Any, tmp_path: Path) ->
     oracle.export(oracle.build("shadows-box"), tmp_path / "case")
     document = tmp_path / "case" / "case.json"
     text = document.read_text("utf-8")
-    document.write_text(text.replace('"method": "warp"', '"method": "pcss"'), "utf-8")
-    with pytest.raises(ValueError, match=r"is not ported: method = 'pcss': the port allows warp, direct, grid$"):
+    document.write_text(text.replace('"method": "warp"', '"method": "traced"'), "utf-8")
+    with pytest.raises(
+        ValueError, match=r"is not ported: method = 'traced': the port allows warp, direct, grid, pcss$"
+    ):
         drawer.into(tmp_path / "case", tmp_path / "drawn")
     assert not (tmp_path / "drawn").exists()
     document.write_text(text, "utf-8")

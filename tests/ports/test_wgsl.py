@@ -24,6 +24,7 @@ CASES = [
     "shadows-pace",
     "shadows-direct",
     "shadows-masks",
+    "shadows-penumbra",
 ]
 
 

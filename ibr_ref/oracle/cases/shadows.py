@@ -304,7 +304,7 @@ def penumbra() -> Case:
     table = painted(plate(0.6, 0.05), 2)
     scene = _scene(light=light, receivers=[painted(plate(FLOOR, -1.0), 1), table, wall(1.1)])
     params = _params(method="pcss", bias=0.55, search_points=12, filter_points=16)
-    return _case("penumbra", "typical", about, scene, params, profile="webgpu")
+    return _case("penumbra", "typical", about, scene, params, profile="gl")
 
 
 def stage() -> Case:

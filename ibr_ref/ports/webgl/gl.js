@@ -61,13 +61,15 @@ export class Device {
         });
     }
 
-    /** A texture of {shape: [rows, columns(, channels)], data}; floats; three channels are padded to four. */
+    /** A texture of {shape: [rows, columns(, channels)], data}; floats; two and three channels are padded to four. */
     upload({shape, data}, {filtered = true, repeat = false} = {}) {
         const {gl} = this;
         const [height, width, channels = 1] = shape;
         const texture = this.texture(width, height, channels === 1 ? "R32F" : "RGBA32F", {filtered, repeat});
-        const texels = channels === 3 ? new Float32Array(4 * width * height) : Float32Array.from(data);
-        if (channels === 3) for (let i = 0; i < width * height; i++) texels.set(data.subarray(3 * i, 3 * i + 3), 4 * i);
+        const padded = channels === 2 || channels === 3;
+        const texels = padded ? new Float32Array(4 * width * height) : Float32Array.from(data);
+        for (let i = 0; padded && i < width * height; i++)
+            texels.set(data.subarray(channels * i, channels * (i + 1)), 4 * i);
         const format = channels === 1 ? gl.RED : gl.RGBA;
         gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, format, gl.FLOAT, texels);
         return texture;

@@ -4,8 +4,8 @@ import {channels} from "./gl.js";
 
 /** All arrays of a frame, {data, shape} by name. Throws for what is not ported. */
 export async function draw(device, {scene, params}) {
-    if (!["warp", "direct", "grid"].includes(params.method))
-        throw new Error(`method = '${params.method}': the port allows warp, direct, grid`);
+    if (!["warp", "direct", "grid", "pcss"].includes(params.method))
+        throw new Error(`method = '${params.method}': the port allows warp, direct, grid, pcss`);
     if (params.accumulation === "float" && !device.gl.getExtension("EXT_float_blend"))
         throw new Error("WebGL 2 without EXT_float_blend");
     return new Drawing(device, scene, params).frame();
@@ -20,6 +20,8 @@ class Drawing {
             ...(params.quantize !== null ? ["QUANTIZE"] : []), ...(params.policy === "nearest" ? ["NEAREST"] : [])];
         this.stages = {};
         if (params.method === "warp") this.images = this.#uploaded();
+        this.soft = params.method === "pcss" ? scene.soft : null;
+        this.points = this.soft ? {search: this.#points(this.soft.search), spread: this.#points(this.soft.filter)} : {};
     }
 
     /** The nine maps as textures, the one for x_i, y_j at 3 j + i. */
@@ -33,6 +35,11 @@ class Drawing {
         }, {filtered: false}));
     }
 
+    /** Points of the light as a row of texels. */
+    #points({shape, data}) {
+        return this.device.upload({shape: [1, ...shape], data}, {filtered: false});
+    }
+
     async frame() {
         const {device, gl, scene, params} = this;
         const {width, height} = scene.camera;
@@ -42,13 +49,12 @@ class Drawing {
         for (const sample of scene.light_samples) {
             const map = await this.#map(sample);
             this.#keep("warp.image", {data: channels(map.read("texel"), [0]), shape: [this.size, this.size]});
-            const textures = {places: seen.get("place"), map: map.get("texel")};
+            const textures = {places: seen.get("place"), map: map.get("texel"), ...this.points};
             const alpha = 1 / scene.light_samples.length;
-            const projected = device.target(width, height, {result: "RGBA32F"}, false);
+            const kinds = {result: "RGBA32F", ...(this.soft ? {softness: "RGBA32F"} : {})};
+            const projected = device.target(width, height, kinds, false);
             await this.#project(projected, sample, textures, alpha, ["COORD"]);
-            const found = projected.read("result");
-            this.#keep("project.coord", {data: channels(found, [0, 1, 2]), shape: [height, width, 3]});
-            this.#keep("project.shadow", {data: channels(found, [3]), shape: [height, width]});
+            this.#keepProjected(projected);
             gl.enable(gl.BLEND);
             gl.blendFunc(gl.SRC_ALPHA, gl.ONE);
             await this.#project(accumulated, sample, textures, alpha, []);
@@ -64,6 +70,16 @@ class Drawing {
             color: {data: channels(picture.read("color"), [0, 1, 2]), shape: [height, width, 3]},
             depth: {data: channels(seen.read("depth"), [0]), shape: [height, width]},
         };
+    }
+
+    #keepProjected(projected) {
+        const {width, height} = projected;
+        const [found, softness] = projected.attachments.map(({name}) => projected.read(name));
+        this.#keep("project.coord", {data: channels(found, [0, 1, 2]), shape: [height, width, 3]});
+        this.#keep("project.shadow", {data: channels(found, [3]), shape: [height, width]});
+        if (!softness) return;
+        for (const [channel, name] of ["blocker", "penumbra"].entries())
+            this.#keep(`project.${name}`, {data: channels(softness, [channel]), shape: [height, width]});
     }
 
     /** Receivers and caster as the camera sees them: place, surface, depth. */
@@ -85,11 +101,12 @@ class Drawing {
         return target;
     }
 
-    /** The map of a sample: warped, rendered, or between four of a grid. */
+    /** The map of a sample: warped, rendered, the one of the whole light, or between four of a grid. */
     async #map(sample) {
         const {device, scene, params} = this;
         if (params.method === "warp") return this.#warped(sample);
         if (params.method === "direct") return this.#rendered(sample.camera, scene.offset);
+        if (this.soft) return this.#rendered(this.soft, scene.offset);
         const {offsets, fraction} = placeInGrid(scene, params.grid_size, sample.seen_offset);
         const maps = {};
         for (const [i, name] of ["m00", "m10", "m01", "m11"].entries())
@@ -196,10 +213,12 @@ class Drawing {
     }
 
     async #project(target, sample, textures, alpha, flags) {
-        const {clip_from_view, view_from_world} = sample.camera;
-        const matrices = {clip_from_view, view_from_world};
-        await this.#screen(target, "project", [...this.flags, ...flags], textures, {bias: [this.params.bias], alpha: [alpha]}, {},
-            matrices);
+        const {params, soft} = this;
+        const {clip_from_view, view_from_world} = soft ?? sample.camera;
+        const planes = soft ? {planes: [soft.near, soft.far, soft.nearest]} : {};
+        const numbers = {bias: [params.bias], alpha: [alpha], ...planes};
+        const file = soft ? "soft" : "project";
+        await this.#screen(target, file, [...this.flags, ...flags], textures, numbers, {}, {clip_from_view, view_from_world});
     }
 
     /** One triangle over all of a target. */

@@ -1,10 +1,10 @@
 """Shadows by image warping in WGSL: the same inputs as `ibr_ref.shadows.render`, in float32.
 
 Scene, parameters and prepared maps are those of an exported case, as case_folder.py reads it; nothing else of `ibr_ref` is
-imported. Ported are method="warp", "direct" and "grid", masks and depths, both policies, every way to compare, and both ways
-to accumulate. The passes of a frame: receivers and caster into place and surface; per light sample its map, warped by three
-draw calls, rendered, or mixed from four, and its projection; the sum, added in a shader for floats, blended for bytes; the
-colour.
+imported. Ported are all methods, masks and depths, both policies, every way to compare, and both ways to accumulate. The
+passes of a frame: receivers and caster into place and surface; per light sample its map, warped by three draw calls,
+rendered, or mixed from four, and its projection (of method="pcss" that of shadows_soft.wgsl); the sum, added in a shader for
+floats, blended for bytes; the colour.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ class Port:
 
     def render(self, scene: Any, params: Any) -> Frame:
         """One frame with all stages, read back. Raises ValueError for what is not ported."""
-        if params.method not in ("warp", "direct", "grid"):
-            raise ValueError(f"method = {params.method!r}: the port allows warp, direct, grid")
+        if params.method not in ("warp", "direct", "grid", "pcss"):
+            raise ValueError(f"method = {params.method!r}: the port allows warp, direct, grid, pcss")
         return _Drawing(self.device, scene, params).frame()
 
 
@@ -62,7 +62,9 @@ class _Drawing:
             "QUANTIZE": params.quantize is not None,
             "NEAREST": params.policy == "nearest",
         }
-        self.code = gpu.constants(flags) + gpu.source("shadows.wgsl")
+        self.soft = params.method == "pcss"
+        files = ("shadows.wgsl", "shadows_soft.wgsl") if self.soft else ("shadows.wgsl",)
+        self.code = gpu.constants(flags) + gpu.source(*files)
         self.width, self.height = int(scene.camera.width), int(scene.camera.height)
         self.depths = params.content == "depth"
         self.outside = gpu.bits([1.0 if self.depths else 0.0] * 4)
@@ -72,6 +74,10 @@ class _Drawing:
             size = int(params.map_size)
             images = np.asarray(scene.maps.image, np.float32).reshape(9, size, size)
             self.images = [gpu.upload(device, each.view(np.uint32), FLOAT) for each in images]
+        self.points: dict[int, Any] = {}
+        if self.soft:
+            points = scene.soft.search, scene.soft.filter
+            self.points = {6 + k: gpu.upload(device, np.asarray(each)[None]) for k, each in enumerate(points)}
 
     def frame(self) -> Frame:
         """All passes."""
@@ -81,27 +87,37 @@ class _Drawing:
         samples = self.scene.light_samples
         for sample in samples:
             drawn = self._map(sample)
-            camera = {"camera": sample.camera, "alpha": 1.0 / len(samples)}
-            projected = self._target(FLOATS)
-            self._screen("projected", {1: place, 2: drawn}, projected, camera)
-            found = gpu.read_floats(self.device, projected).astype(np.float64)
+            camera = {"camera": self.scene.soft if self.soft else sample.camera, "alpha": 1.0 / len(samples)}
+            asked = {1: place, 2: drawn, **self.points}
+            projected = self._projected(asked, camera)
             self.stages["warp.image"].append(gpu.read_floats(self.device, drawn).astype(np.float64))
-            self.stages["project.coord"].append(found[..., :3])
-            self.stages["project.shadow"].append(found[..., 3])
             if self.params.accumulation == "float":
                 before, sums = sums, self._target(FLOAT)
-                self._screen("added", {1: projected, 2: before}, sums, camera)
+                self._screen("added", {1: projected, 2: before}, [sums], camera)
             else:
-                self._screen("blended", {1: place, 2: drawn}, bytes_, camera, kind="r8unorm", clear=first)
+                entry = "softly_blended" if self.soft else "blended"
+                self._screen(entry, asked, [bytes_], camera, kind="r8unorm", clear=first)
                 first = None
         return self._resolved(place, surface, depth, sums if self.params.accumulation == "float" else bytes_)
+
+    def _projected(self, asked: Mapping[int, Any], camera: Mapping[str, Any]) -> Any:
+        """Coordinates and shadow of a sample; its stages are kept."""
+        targets = [self._target(FLOATS) for _ in range(2 if self.soft else 1)]
+        self._screen("softly_projected" if self.soft else "projected", asked, targets, camera)
+        found = [gpu.read_floats(self.device, target).astype(np.float64) for target in targets]
+        self.stages["project.coord"].append(found[0][..., :3])
+        self.stages["project.shadow"].append(found[0][..., 3])
+        if self.soft:
+            self.stages["project.blocker"].append(found[1][..., 0])
+            self.stages["project.penumbra"].append(found[1][..., 1])
+        return targets[0]
 
     def _resolved(self, place: Any, surface: Any, depth: Any, sums: Any) -> Frame:
         read = gpu.read_floats if self.params.accumulation == "float" else gpu.read_texture
         shadow = read(self.device, sums).astype(np.float64) / (1.0 if self.params.accumulation == "float" else 255.0)
         as_floats = gpu.upload(self.device, shadow)
         picture = self._target(FLOATS)
-        self._screen("resolved", {1: place, 2: surface, 3: as_floats}, picture, {})
+        self._screen("resolved", {1: place, 2: surface, 3: as_floats}, [picture], {})
         single = len(self.scene.light_samples) == 1
         arrays = {name: each[0] if single else np.stack(each) for name, each in self.stages.items()}
         color = gpu.read_floats(self.device, picture)[..., :3].astype(np.float64)
@@ -120,11 +136,13 @@ class _Drawing:
         return place, surface, depth
 
     def _map(self, sample: Any) -> Any:
-        """The map of a sample: warped, rendered, or between four of a grid."""
+        """The map of a sample: warped, rendered, the one of the whole light, or between four of a grid."""
         if self.params.method == "warp":
             return self._warped(sample)
         if self.params.method == "direct":
             return self._rendered(sample.camera, self.scene.offset)
+        if self.soft:
+            return self._rendered(self.scene.soft, self.scene.offset)
         offsets, fraction = place_in_grid(self.scene, int(self.params.grid_size), sample.seen_offset)
         if not self.params.grid_mix:
             fraction = tuple(float(f >= 0.5) for f in fraction)
@@ -135,7 +153,7 @@ class _Drawing:
     def _between(self, first: Any, second: Any, share: float) -> Any:
         """Two maps mixed."""
         mixed = gpu.target(self.device, int(self.params.map_size), int(self.params.map_size), FLOAT)
-        self._screen("mixed", {1: first, 2: second}, mixed, {"shares": (0.0, 0.0, 0.0, share)})
+        self._screen("mixed", {1: first, 2: second}, [mixed], {"shares": (0.0, 0.0, 0.0, share)})
         return mixed
 
     def _rendered(self, camera: Any, offset: Any) -> Any:
@@ -150,7 +168,7 @@ class _Drawing:
         if k == 1:
             return drawn
         counted = gpu.target(self.device, size // k, size // k, FLOAT)
-        self._screen("count", {1: drawn}, counted, {"samples": k})
+        self._screen("count", {1: drawn}, [counted], {"samples": k})
         return counted
 
     def _warped(self, sample: Any) -> Any:
@@ -236,16 +254,16 @@ class _Drawing:
         self,
         entry: str,
         resources: Mapping[int, Any],
-        target: Any,
+        targets: Sequence[Any],
         numbers: Mapping[str, Any],
         *,
         kind: str = "",
         clear: Sequence[float] | None = (0, 0, 0, 0),
     ) -> None:
         blend = ADD if kind else None
-        kinds = [kind or target.format]
+        kinds = [kind or target.format for target in targets]
         pipeline = gpu.pipeline(self.device, self.code, ("screen", entry), kinds, depth=False, blend=blend)
-        gpu.screen(self.device, pipeline, {**resources, 0: self._block(**numbers)}, [(target, clear)])
+        gpu.screen(self.device, pipeline, {**resources, 0: self._block(**numbers)}, [(each, clear) for each in targets])
 
     def _block(
         self,
@@ -261,7 +279,8 @@ class _Drawing:
         moved = (0.0,) * 3 if offset is None else offset_in_world(scene, offset)
         columns = [np.asarray(m, np.float32).T.ravel() for m in (camera.clip_from_view, camera.view_from_world)]
         vectors = [(*moved, float(self.params.bias)), scene.camera.eye, (*scene.light.position, alpha), shares]
-        vectors += [(*scene.background, scene.ambient)]
+        planes = (scene.soft.near, scene.soft.far, scene.soft.nearest, 0.0) if self.soft else (0.0,) * 4
+        vectors += [(*scene.background, scene.ambient), planes]
         floats = np.concatenate([*columns, *(np.asarray(vector, np.float32) for vector in vectors)])
         block = floats.astype(np.float32).tobytes() + np.array([samples, 0, 0, 0], np.int32).tobytes()
         return gpu.buffer(self.device, block, wgpu.BufferUsage.UNIFORM)

@@ -9,6 +9,7 @@ struct Pass {
     light: vec4f,           // the centre; 1/N
     shares: vec4f,          // of the next map in the row, or in the upper and the lower row, of the lower row; this pass' own
     background: vec4f,      // and the ambient share
+    planes: vec4f,          // of method "pcss": near and far of the map, the caster's nearest distance
     samples: vec4i,         // k, of k x k samples a texel
 }
 

@@ -158,9 +158,13 @@ class Soft(Maps, Project):
     def percentage(self, image: Floats, at: Vector, scale: Floats) -> Floats:
         """(N,) the mean of the comparisons, 0 lit to 1."""
         s, t, r = at
-        here, sampler = self.biased_distance(r), self.shadow_sampler(self.do)
-        found = []
-        for u, v in self.looked_up([s, t], self.filter_points, scale):
+        places = self.looked_up([s, t], self.filter_points, scale)
+        return self.mean_of_comparisons(image, places, self.biased_distance(r))
+
+    def mean_of_comparisons(self, image: Floats, places: Sequence[Vector], here: Floats) -> Floats:
+        """(N,) of all places (s, t) on the map."""
+        found, sampler = [], self.shadow_sampler(self.do)
+        for u, v in places:
             mixed = self.of_point(sampler, image, u, v, here)
             found.append(np.where(np.asarray(self.in_map(u, v)), mixed, 0.0))
         return self.do.divide(self.do.sum(found), float(len(found)))

@@ -34,11 +34,16 @@ class Map:
     high: Floats
     spoiled: Bools
     """(S, S) the port's texel is no number: `firm` has the reference's."""
+    drawn: Bounded
+    """(S, S) all that a texel may be that is not empty."""
+    vacant: Bools
+    """(S, S) texels that may be empty, whatever `drawn` is."""
 
     @classmethod
     def of(cls, firm: Bounded, spoiled: Bools | None = None) -> Map:
         """A map without open decisions."""
-        return cls(firm, firm.low, firm.high, np.zeros(firm.value.shape, np.bool_) if spoiled is None else spoiled)
+        none = np.zeros(firm.value.shape, np.bool_)
+        return cls(firm, firm.low, firm.high, none if spoiled is None else spoiled, firm, none)
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +96,8 @@ def rendered(model: Model, raster: Raster, clip: Sequence[Any], reference: Float
     if model.case.params.content == "mask":
         low, high = (counts(each, int(model.program.params.map_samples)) for each in found.covered)
         none = np.zeros(reference.shape, np.bool_)
-        return Map(Bounded(reference, np.zeros_like(reference), model.device), low, high, none)
+        firm = Bounded(reference, np.zeros_like(reference), model.device)
+        return Map(firm, low, high, none, centered(low, high, model.device), none)
     return _depths(found, reference, model.device)
 
 
@@ -126,7 +132,14 @@ def _depths(found: Drawn, reference: Floats, device: Device) -> Map:
     firm = Bounded(reference, error.reshape(reference.shape), device)
     low, high = (a.reshape(reference.shape) for a in (low, high))
     none = np.zeros(reference.shape, np.bool_)
-    return Map(firm, np.minimum(low, firm.low), np.maximum(high, firm.high), none)
+    low, high = np.minimum(low, firm.low), np.maximum(high, firm.high)
+    deepest = np.where(flat < 1.0, firm.high.reshape(-1), 0.0)
+    np.maximum.at(deepest, pixel, np.minimum(depth.high, 1.0))
+    deepest, empty = deepest.reshape(reference.shape), found.winners.empty.reshape(reference.shape)
+    deepest = np.where((deepest == 0.0) | found.wild, 1.0, deepest)
+    return Map(
+        firm, low, high, none, centered(np.maximum(low, 0.0), np.minimum(deepest, 1.0), device), empty | found.wild
+    )
 
 
 def _hull(found: Drawn, texels: int) -> tuple[Floats, Floats]:

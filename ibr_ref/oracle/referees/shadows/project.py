@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.accept.bounded import Bounded, converted
 from ibr_ref.oracle.arithmetic.number import Number
+from ibr_ref.oracle.referees.shadows.enclosed import enclosed
 from ibr_ref.oracle.referees.shadows.footprint import reads
 from ibr_ref.oracle.referees.shadows.maps import Map
 from ibr_ref.oracle.referees.shadows.model import Model
@@ -83,26 +84,38 @@ def shadow(model: Model, texels: Map, at: Coordinate, caster: Bools) -> Shadow:
     found = outcomes_of(
         model, texels, at, lambda program, image, places, rows: program.shadowed(image, places, caster[rows])
     )
-    fragment, outcome, lost = found
     spoiled = np.zeros(len(caster), np.bool_)
-    spoiled[lost] = True
-    return _ordered(fragment, outcome, exact, spoiled)
+    spoiled[found.lost] = True
+    return _ordered(found.fragment, found.outcome, exact, spoiled)
 
 
-def outcomes_of(
-    model: Model, texels: Map, at: Coordinate, steps: Callable[[Any, Any, Any, Ints], Any]
-) -> tuple[Ints, Bounded, Ints]:
-    """Fragments and outcomes of what a program makes of the map, and fragments of which anything is legal.
+class Outcomes(NamedTuple):
+    """What a program makes of a map."""
 
-    steps(program, image, places, rows) makes one number of each of the fragments `rows`.
-    """
+    fragment: Ints
+    """(m,) of each outcome."""
+    outcome: Bounded
+    """(m,)."""
+    lost: Ints
+    """Fragments of which anything is legal."""
+    enclosed: Ints
+    """Fragments that have one outcome around all others."""
+
+
+def outcomes_of(model: Model, texels: Map, at: Coordinate, steps: Callable[[Any, Any, Any, Ints], Any]) -> Outcomes:
+    """steps(program, image, places, rows) makes one number of each of the fragments `rows`."""
     axes, every = [at.s, at.t, at.r, at.w], np.arange(len(at.spoiled))
-    runs = [_followed(model, texels.firm, axes, every, steps)]
+    runs = [_followed(model, model.program, texels.firm, axes, every, steps)]
     open_texels = (texels.low < texels.firm.low) | (texels.high > texels.firm.high)
     soft = model.program.soft  # whose regions are anywhere around
     if open_texels.any():
         near = every if soft else np.flatnonzero(reads(open_texels, at.s, at.t))
-        runs.append(_followed(model, centered(texels.low, texels.high, at.s.device), axes, near, steps))
+        image = centered(texels.low, texels.high, at.s.device)
+        runs.append(_followed(model, model.program, image, axes, near, steps))
+    many = np.unique(np.concatenate([run[2] for run in runs]))
+    if soft and len(many):
+        runs = [(*run[:2], many[:0]) for run in runs]
+        runs.append(_followed(model, enclosed(model, texels), texels.drawn, axes, many, steps))
     fragment = np.concatenate([run[0] for run in runs])
     found = [model.bounded(run[1]) for run in runs]
     value, error = np.concatenate([x.value for x in found]), np.concatenate([x.error for x in found])
@@ -110,15 +123,19 @@ def outcomes_of(
     if texels.spoiled.any():
         lost |= True if soft else reads(texels.spoiled, at.s, at.t)
     lost[np.concatenate([run[2] for run in runs])] = True
-    return fragment, Bounded(value, error, at.s.device), np.flatnonzero(lost)
+    return Outcomes(fragment, Bounded(value, error, at.s.device), np.flatnonzero(lost), many)
 
 
 def _followed(
-    model: Model, image: Bounded, axes: Sequence[Bounded], among: Ints, steps: Callable[[Any, Any, Any, Ints], Any]
+    model: Model,
+    program: Any,
+    image: Bounded,
+    axes: Sequence[Bounded],
+    among: Ints,
+    steps: Callable[[Any, Any, Any, Ints], Any],
 ) -> tuple[Ints, Number, Ints]:
     """Fragments and outcomes, and the fragments that have too many."""
-    machine, program = model.machine, model.program
-    texels = model.number(image)
+    machine, texels = model.machine, model.number(image)
 
     def run(origin: Ints) -> dict[str, Any]:
         lane, rows = np.arange(len(origin)), among[origin]

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ibr_ref.array_types import Bools, Floats, Ints
-from ibr_ref.oracle.accept.bounded import Bounded, stored
+from ibr_ref.oracle.accept.bounded import stored
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
 from ibr_ref.oracle.referees.shadows.maps import VISIBLE
-from ibr_ref.oracle.referees.shadows.project import Coordinate, handed, outcomes_of
+from ibr_ref.oracle.referees.shadows.project import Coordinate, Outcomes, handed, outcomes_of
 
 NAMES = ("project.coord", "project.blocker", "project.penumbra", "project.shadow")
 
@@ -63,7 +63,7 @@ def fragments_of(given: Inputs, name: str, found: Floats) -> tuple[Bools, Floats
         legal = np.logical_and.reduce([axis.allows(found[:, k]) for k, axis in enumerate(at.axes)])
         off = np.max([np.broadcast_to(2.0 * axis.error, legal.shape) for axis in at.axes], axis=0)
         return legal, off, np.zeros(len(legal), np.bool_)
-    fragment, outcome, lost = outcomes(given, name)
+    fragment, outcome, lost, enclosed = outcomes(given, name)
     legal = np.zeros(len(found), np.bool_)
     legal[fragment[outcome.allows(found[fragment])]] = True
     legal[lost] = True
@@ -72,6 +72,7 @@ def fragments_of(given: Inputs, name: str, found: Floats) -> tuple[Bools, Floats
     np.maximum.at(high, fragment, outcome.high)
     np.maximum.at(off, fragment, np.broadcast_to(2.0 * outcome.error, outcome.value.shape))
     open_ = high - low > off + VISIBLE
+    open_[enclosed] = (high - low > VISIBLE)[enclosed]
     open_[lost] = True
     return legal, off, open_
 
@@ -82,8 +83,8 @@ def place(given: Inputs) -> Coordinate:
     return at if "project.coord" not in given.handed else handed(found_of(given, "project.coord")[given.seen.pixel], at)
 
 
-def outcomes(given: Inputs, name: str) -> tuple[Ints, Bounded, Ints]:
-    """Fragments and outcomes of an array, made from the port's own ones; and fragments of which anything is legal."""
+def outcomes(given: Inputs, name: str) -> Outcomes:
+    """Of an array, made from the port's own ones."""
     at = place(given)
     return outcomes_of(given.model, given.map(0), at, _steps(given, name))
 

@@ -150,7 +150,7 @@ def _softened(given: Inputs, fragment: int, arrays: Handed, index: Index) -> lis
     for name, step in (("project.blocker", "mean distance of blockers"), ("project.penumbra", "penumbra, 1/b - 1/r")):
         own = _own(given, arrays, name)
         port = None if own is None else float(own[0][index])
-        which, outcome, _ = replay_soft.outcomes(given, name)
+        which, outcome, _, _ = replay_soft.outcomes(given, name)
         mine = [int(k) for k in np.flatnonzero(which == fragment)]
         agreeing = [k for k in mine if port is not None and bool(outcome[k].allows(port))]
         rows.append(number(step, outcome[(agreeing or mine)[0]], port, array=name))
