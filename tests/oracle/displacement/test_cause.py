@@ -96,6 +96,7 @@ def test_a_number_that_was_not_guessed_is_found(name: str, value: float, other: 
     assert (told, float(looks_like)) == (name, pytest.approx(value, rel=0.01))
 
 
+@pytest.mark.long
 def test_two_bugs_of_which_neither_explains_all_are_named_together() -> None:
     name, a, b = "displacement-slope", "ambient off by 2 %", "gradient without 1/2"
     kinds = [next(m.port for m in MUTANTS if m.name == each) for each in (a, b)]
