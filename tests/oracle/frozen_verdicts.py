@@ -25,12 +25,14 @@ from ibr_ref.oracle.trials import judge
 KINDS = ("easy", "typical", "adversarial")
 
 
-def ports(module: Any) -> Iterator[tuple[str, Any, Any]]:
-    """(name, port, variant) of the right port, every variant and every mutant."""
+def ports(module: Any, case: Any) -> Iterator[tuple[str, Any, Any]]:
+    """(name, port, variant) of the right port, every variant and every mutant that a port of the case can have."""
     yield "right", module.Port, None
     for variant in module.VARIANTS:
         yield f"variant {variant.name}", variant.port or module.Port, variant
     for mutant in module.MUTANTS:
+        if hasattr(mutant, "applies") and not mutant.applies(case.system):
+            continue
         yield f"mutant {mutant.name}", mutant.port, None
 
 
@@ -60,7 +62,7 @@ def write(path: Path, method: str, kinds: tuple[str, ...], every: int) -> None:
     module = module_of(method)
     with path.open("a") as file:
         for case in (case for case in map(build, names(method)) if case.kind in kinds):
-            for name, port, variant in ports(module):
+            for name, port, variant in ports(module, case):
                 chosen = crc32(f"{case.name} {name}".encode()) % every == 0
                 if chosen and (case.name, name) not in done:
                     verdict = judged(case, port_output(case, port, variant))
