@@ -1,4 +1,4 @@
-"""Right ports on random devices, on random small cases: none may be accused.
+"""Right ports on random devices, every fourth with 4 subpixel bits, on random small cases: none may be accused.
 
     python -m tests.oracle.fuzz_devices --count 2000 --workers 2
 
@@ -14,7 +14,7 @@ import time
 import warnings
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from hypothesis import HealthCheck, Phase, given, seed, settings
@@ -62,6 +62,8 @@ def tried(number: int, of: int) -> list[Tried]:
 def judged(case: Case, random: np.random.Generator, where: str) -> Tried:
     """The right port by one device, by all it has or by some of its arrays."""
     policy, profile = random_policy(random)
+    if random.integers(4) == 0:
+        policy, profile = replace(policy, subpixel_bits=4), f"{profile},subpixel_bits=4"
     port = methods.named(case.method).plain_port
     assert port is not None
     arrays = port.open().Port(case.scene, case.params, policy, case.inputs).render()
