@@ -6,9 +6,11 @@ projected onto it; colours and what is done to the picture are resolve's.
 
 from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.faults.shadows.accumulate import ACCUMULATE
+from ibr_ref.oracle.faults.shadows.comparison import COMPARISON
 from ibr_ref.oracle.faults.shadows.controls import CONTROLS
 from ibr_ref.oracle.faults.shadows.depth import DEPTH
 from ibr_ref.oracle.faults.shadows.grid import GRID
+from ibr_ref.oracle.faults.shadows.lookup import LOOKUP
 from ibr_ref.oracle.faults.shadows.maps import MAPS
 from ibr_ref.oracle.faults.shadows.project import PROJECT
 from ibr_ref.oracle.faults.shadows.resolve import RESOLVE
@@ -19,7 +21,7 @@ from ibr_ref.oracle.programs.shadows.variants import VARIANTS
 
 MUTANTS: tuple[Mutant, ...] = tuple(
     mutant
-    for bugs in (MAPS, CONTROLS, WARP, GRID, DEPTH, PROJECT, SOFT, ACCUMULATE, RESOLVE)
+    for bugs in (MAPS, CONTROLS, WARP, GRID, DEPTH, PROJECT, LOOKUP, COMPARISON, SOFT, ACCUMULATE, RESOLVE)
     for mutant in bugs.mutants
 )
 """In the order of the stages."""

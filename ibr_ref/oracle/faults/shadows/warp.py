@@ -6,6 +6,7 @@ import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.faults.shadows.hidden import BELOW_A_BYTE
+from ibr_ref.oracle.faults.shadows.systems import MAPPED
 from ibr_ref.oracle.programs.program import Bools, Floats, Ints, Vector
 from ibr_ref.oracle.programs.shadows.port import Port
 from ibr_ref.oracle.programs.shadows.raster import Raster
@@ -16,12 +17,11 @@ WARP = Bugs("warp", only=("warp",))
 
 PLACED = ("warp", "grid")
 """Where the object's place as a sample sees it matters."""
-ALL = ("warp", "direct", "grid")
 
 ANY_ORDER = "the sum of all samples is the same in any order"
 
 
-@WARP.add("warp-listed-by-distance", only=ALL, hidden=ANY_ORDER)
+@WARP.add("warp-listed-by-distance", only=MAPPED, hidden=ANY_ORDER)
 class _ByDistance(Port):
     """Samples that are listed are taken from the light's centre outwards."""
 
@@ -250,7 +250,7 @@ class _WorldXY(Port):
         return self.do.subtract(self.offset, self.do.subtract(place, self.centre)[:2])
 
 
-@WARP.add("warp-samples-transposed", only=ALL, hidden="the sum of the samples is the same")
+@WARP.add("warp-samples-transposed", only=MAPPED, hidden="the sum of the samples is the same")
 class _SamplesTransposed(Port):
     """Samples of the light are taken with i outer and j inner."""
 
