@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ibr_ref.oracle.accept.bytes import color_bytes
 from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.colors import as_numbers
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.findings import Convention
 from ibr_ref.oracle.judgement import Handed
@@ -46,30 +47,25 @@ def conventions(case: Case, device: Device, handed: Handed, wrong: int) -> tuple
 
 def _distance(case: Case, handed: Handed) -> float:
     """Mean absolute difference of colours and, where handed in, depths."""
-    color = _floats(handed["color"])
+    color = as_numbers(handed["color"])
     distance = float(np.nanmean(np.abs(color - case.frame.color)))
     if "depth" in handed:
-        distance += float(np.nanmean(np.abs(_floats(handed["depth"]) - case.frame.depth)))
+        distance += float(np.nanmean(np.abs(as_numbers(handed["depth"]) - case.frame.depth)))
     return distance
-
-
-def _floats(image: Image) -> NDArray[np.float64]:
-    numbers = np.asarray(image, np.float64)
-    return numbers / 255.0 if image.dtype == np.uint8 else numbers
 
 
 def _guesses(case: Case, handed: Handed) -> Iterator[_Guess]:
     for name, undo in _ON_IMAGES.items():
         yield _Guess(name, case, {k: undo(np.asarray(handed[k])) for k in ("color", "depth") if k in handed})
     yield _Guess("channels in the order BGR", case, {**handed, "color": np.asarray(handed["color"])[..., ::-1]})
-    yield _Guess("colours encoded as sRGB", case, {**handed, "color": _linear(_floats(handed["color"]), handed)})
+    yield _Guess("colours encoded as sRGB", case, {**handed, "color": _linear(as_numbers(handed["color"]), handed)})
     yield _Guess(
         "colours decoded from sRGB once too often",
         case,
-        {**handed, "color": _encoded(_floats(handed["color"]), handed)},
+        {**handed, "color": _encoded(as_numbers(handed["color"]), handed)},
     )
     if "depth" in handed:
-        depth = _floats(handed["depth"])
+        depth = as_numbers(handed["depth"])
         yield _Guess("depth as z in [-1, 1]", case, {**handed, "depth": depth / 2.0 + 0.5})
         yield _Guess("reversed depth", case, {**handed, "depth": 1.0 - depth})
     yield from _on_cameras(case, handed)

@@ -18,6 +18,7 @@ from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.colors import as_numbers
 from ibr_ref.oracle.faults.kinds import Mutant, PlainPort
 from ibr_ref.oracle.faults.taken import LOOKS_LIKE, Setting, suspects
 from ibr_ref.oracle.faults.vectors import Vector
@@ -184,9 +185,7 @@ def _some(array: Any, among: Bools) -> Any:
 
 def _row(arrays: Mapping[str, Any], names: Sequence[str], among: Bools) -> Floats:
     """(n,) the numbers of arrays, colours from 0 to 1."""
-    some = [_some(arrays[name], among) for name in names]
-    rows = [x.astype(np.float64).reshape(-1) / (255.0 if x.dtype == np.uint8 else 1.0) for x in some]
-    return np.concatenate([np.zeros(0), *rows])
+    return np.concatenate([np.zeros(0), *(as_numbers(_some(arrays[name], among)).reshape(-1) for name in names)])
 
 
 def _slack(arrays: Mapping[str, Any], names: Sequence[str], among: Bools) -> Floats:

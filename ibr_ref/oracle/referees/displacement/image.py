@@ -14,6 +14,7 @@ from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.colors import as_numbers
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.programs.displacement import Port as Program
@@ -58,7 +59,7 @@ class Shown:
         pixels, device = picture.pixels, picture.model.device
         found = picture.model.program.rows(np.asarray(handed["color"]))
         bytes_ = found.dtype == np.uint8
-        color = np.asarray(found, np.float64).reshape(pixels, 3) / (255.0 if bytes_ else 1.0)
+        color = as_numbers(found).reshape(pixels, 3)
         slack = (device.byte + 255.0 * UNIT) / 255.0 if bytes_ else 0.0
         behind = picture.model.background
         bare = np.all([np.abs(color[:, k] - x.value) <= slack + x.deviation for k, x in enumerate(behind)], axis=0)

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ibr_ref.array_types import Bools, Floats
+from ibr_ref.array_types import Bools
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases.case import Case
+from ibr_ref.oracle.colors import as_numbers
 from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.judgement import Handed
 from ibr_ref.oracle.programs.displacement import Port as Program
@@ -51,12 +51,7 @@ def _apart(case: Case, handed: Handed, at: Bools, kind: type[Any]) -> float:
     with np.errstate(all="ignore"):
         program = kind(case.scene, case.params, Policy(), case.inputs)
         drawn = program.render(at | program.rows(at))
-        apart = np.abs(_color(drawn["color"])[at] - _color(handed["color"])[at]).max(axis=1) / FAR
+        apart = np.abs(as_numbers(drawn["color"])[at] - as_numbers(handed["color"])[at]).max(axis=1) / FAR
         if "depth" in handed:
             apart = np.fmax(apart, np.abs(np.asarray(drawn["depth"], np.float64)[at] - handed["depth"][at]) / DEEP)
     return float(np.nan_to_num(np.minimum(apart, 1.0), nan=1.0).mean())
-
-
-def _color(color: NDArray[Any]) -> Floats:
-    """0 to 1."""
-    return np.asarray(color, np.float64) / (255.0 if color.dtype == np.uint8 else 1.0)
