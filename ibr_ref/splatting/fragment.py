@@ -64,10 +64,35 @@ def clear(background, color):
         _clear_row(background, color[row])
 
 
+@device
+def _span(winners):
+    first, stop = 0, len(winners)
+    while first < stop and winners[first] < 0:
+        first += 1
+    while first < stop and winners[stop - 1] < 0:
+        stop -= 1
+    return first, stop
+
+
 @kernel
-def _resolve(reference, normals, lighting, eye, first, splat, color):
+def _occupied(splat, spans):
     for row in prange(len(splat)):
-        _resolve_row(reference, normals, lighting, eye, first, splat[row], color[row])
+        spans[row, 0], spans[row, 1] = _span(splat[row])
+
+
+def occupied(splat: NDArray[np.int32]) -> NDArray[np.int32]:
+    """(H, 2) the columns [first, stop) of each row of the winners (H, W) beside which there are none."""
+    spans = np.empty((len(splat), 2), np.int32)
+    _occupied(splat, spans)
+    return spans
+
+
+@kernel
+def _resolve(reference, normals, lighting, eye, first, splat, spans, color):
+    for row in prange(len(splat)):
+        start, stop = spans[row, 0], spans[row, 1]
+        if start < stop:
+            _resolve_row(reference, normals, lighting, eye, first, splat[row, start:stop], color[row, start:stop])
 
 
 def resolve(
@@ -77,7 +102,11 @@ def resolve(
     view: View,
     first: int,
     splat: NDArray[np.int32],
+    spans: NDArray[np.int32],
     color: NDArray[np.float64],
 ) -> None:
-    """Write the colours (H, W, 3) of the pixels whose winner (H, W) is a point of this image; `first` is its first one."""
-    _resolve(reference, normals, lighting, view.eye, first, splat, color)
+    """Write the colours (H, W, 3) of the pixels whose winner (H, W) is a point of this image; `first` is its first one.
+
+    spans: of the winners, as `occupied` gives them: each of many small images looks at no more of the picture.
+    """
+    _resolve(reference, normals, lighting, view.eye, first, splat, spans, color)

@@ -17,7 +17,7 @@ from ibr_ref.splatting import atlas
 from ibr_ref.splatting.batches import Rows, batches, starts_of
 from ibr_ref.splatting.buffers import Law, Lighting, Vertices, View, vertices_for
 from ibr_ref.splatting.footprint import Filter, ellipses_for, footprints
-from ibr_ref.splatting.fragment import clear, resolve
+from ibr_ref.splatting.fragment import clear, occupied, resolve
 from ibr_ref.splatting.inputs import Params, Scene
 from ibr_ref.splatting.references import Prepared, lighting_of, prepare, view_of
 from ibr_ref.splatting.software import draw_all
@@ -89,9 +89,10 @@ def _nearest(work: Pass) -> Drawn:
         draw_splats(Splats(*drawn), work.params.shape == "disc", batch[0].first, target)
     (color,) = arrays([(np.float64, (*target.splat.shape, 3))])
     clear(work.background, color)
+    spans = occupied(target.splat)
     for first, prepared in zip(starts_of(work.references), work.references, strict=False):
         normals = _normals(prepared, work.lighting)
-        resolve(prepared.reference, normals, work.lighting, work.view, first, target.splat, color)
+        resolve(prepared.reference, normals, work.lighting, work.view, first, target.splat, spans, color)
     return Drawn(color, target.depth, vertices, _raster_stages(target) if work.stages else {})
 
 
