@@ -63,7 +63,6 @@ def run_scene(number: int) -> None:
     drawn.run_scene(number, cases(REGIONS[number % len(REGIONS)]), agree)
 
 
-@pytest.mark.sampled(4)
 @pytest.mark.parametrize("number", range(SCENES))
 def test_drawn_scene_agrees(number: int, one_thread: None) -> None:
     run_scene(number)

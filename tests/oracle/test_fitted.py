@@ -63,3 +63,10 @@ def test_a_vector_is_found(place: tuple[float, float, float]) -> None:
 def test_no_vector_explains_another_fault() -> None:
     target = np.random.default_rng(2).uniform(0.0, 1.0, 97)
     assert fitted_vector(np.array([1.0, 0.0, 2.0]), towards, target, SLACK) == []
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -1e300])
+def test_no_vector_explains_what_is_no_number(value: float) -> None:
+    """A warning of a mean of nothing once."""
+    with np.errstate(all="ignore"):
+        assert fitted_vector(np.array([1.0, 0.0, 2.0]), towards, np.full(97, value), SLACK) == []

@@ -86,6 +86,8 @@ def fitted_vector(start: Floats, draw: VectorDraw, target: Floats, slack: Floats
     if here is None or here.shape != target.shape:
         return []
     off = np.isfinite(target - here) & (np.abs(target - here) > slack)
+    if not off.any():  # what differs is no number anywhere
+        return []
     before = np.abs(target - here)[off]
     for turn in range(TURNS):
         moved = _stepped(x, here, draw, target, slack)
@@ -119,7 +121,10 @@ def _stepped(x: Floats, here: Floats, draw: VectorDraw, target: Floats, slack: F
     scale = np.median(np.abs(apart[used])) + np.median(slack[used])
     weight = 1.0 / (1.0 + (apart[used] / scale) ** 2)
     matrix = slopes[used].T * weight
-    step, *_ = np.linalg.lstsq(matrix @ slopes[used], matrix @ apart[used], rcond=None)
+    normal, wanted = matrix @ slopes[used], matrix @ apart[used]
+    if not (np.isfinite(normal).all() and np.isfinite(wanted).all()):  # a port's numbers may be anything
+        return None
+    step, *_ = np.linalg.lstsq(normal, wanted, rcond=None)
     for halved in range(HALVED):
         there = draw(x + step / 2**halved)
         if there is not None and np.median(np.abs(target - there)[used]) <= np.median(np.abs(apart)[used]):
