@@ -26,6 +26,7 @@ main()
 """`ibr-ref`, but it says when it begins to render."""
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT for one process alone")
 def test_within_two_seconds_and_nothing_half_written(tmp_path: Path) -> None:
     imageio.imwrite(tmp_path / "h.png", np.zeros((4, 4), np.uint8))

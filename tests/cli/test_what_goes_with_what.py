@@ -179,6 +179,7 @@ def numeric() -> Iterator[tuple[str, str]]:
         yield f"render {name}", f"--{flag}"
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("name", "flag"), sorted(numeric()))
 def test_what_is_no_number_is_refused_wherever_it_stands(run: Run, tmp_path: Path, name: str, flag: str) -> None:
     for text in NO_NUMBERS:

@@ -252,6 +252,7 @@ COMMANDS: list[list[str]] = [
 ]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("words", COMMANDS, ids=lambda words: " ".join(word[:12] for word in words))
 def test_options_of_any_length(tmp_path: Path, words: list[str]) -> None:
     """In a process of its own, where a warning would be printed beside the line."""

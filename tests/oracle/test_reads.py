@@ -149,6 +149,7 @@ def test_the_plain_port_is_right(name: str) -> None:
     assert blamed(name, plain(name)) == {}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("method", "name"), PAIRS)
 def test_what_reads_an_array_follows_it(method: str, name: str) -> None:
     of = case_with(method, name)
@@ -159,6 +160,7 @@ def test_what_reads_an_array_follows_it(method: str, name: str) -> None:
     assert {*found} == {name}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("method", "name"), PAIRS)
 def test_what_does_not_follow_an_array_is_wrong(method: str, name: str) -> None:
     of = case_with(method, name)

@@ -157,6 +157,7 @@ def test_every_stage_is_legal(device: Any, scene: str, name: str) -> None:
     assert 0.01 < shadow.mean() < 0.8, "hardly a shadow: the test says nothing"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("content", ["mask", "depth"])
 @pytest.mark.parametrize("samples", [1, 3])
 def test_the_nine_maps_are_legal(device: Any, content: str, samples: int) -> None:

@@ -24,6 +24,7 @@ def drawer() -> Iterator[Any]:
     found.close()
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "name",
     [

@@ -175,6 +175,7 @@ def test_a_picture_alone_is_judged_too() -> None:
     )
 
 
+@pytest.mark.long
 def test_assert_port(tmp_path: Path) -> None:
     assert_port(plain, method="splatting", device="ieee32", max_examples=5)
     with pytest.raises(AssertionError, match=r"(?s)FAIL: displacement-march.steep, .*Case: ") as failure:

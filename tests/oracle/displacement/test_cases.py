@@ -36,6 +36,7 @@ def test_hardly_a_pixel_is_undecided_and_the_reference_passes(name: str) -> None
     assert not wrong([judgement])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("name", "profile"), list(zip(SMALL, cycle(PROFILES), strict=False)))
 def test_the_reference_passes_stage_by_stage(name: str, profile: str) -> None:
     """By each profile on several cases; all profiles of all cases are `check --self-test`'s."""

@@ -143,6 +143,7 @@ class _Unknown(Port):
         return [u + 0.0625, v, h]
 
 
+@pytest.mark.long
 def test_a_bug_that_is_not_known_has_no_name() -> None:
     name = "displacement-slope"
     assert named(name, draw(name, Policy(), _Unknown)) == []

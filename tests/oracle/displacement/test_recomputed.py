@@ -33,6 +33,7 @@ def port(request: pytest.FixtureRequest) -> Port:
     return Port(model=Model(case(request.param), IEEE32), handed=reference(request.param))
 
 
+@pytest.mark.sampled(4)
 def test_corners(port: Port) -> None:
     legal = port.model.vertices
     for name in ("vertex.clip", "vertex.patch"):

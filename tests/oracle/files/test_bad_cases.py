@@ -51,6 +51,7 @@ def test_any_file(folder: Path, way: str) -> None:
     assert not damage.Ran.count
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("way", damage.ARRAYS)
 def test_any_array(folder: Path, way: str) -> None:
     assert spoiled(folder, "*.npy", damage.ARRAYS[way]) > 15

@@ -72,6 +72,7 @@ def test_any_array_to_which_it_applies(handed: Path, full_case: Case, way: str) 
     assert spoiled(handed, full_case, "*.npy", damage.MAYBE[way]) > 5
 
 
+@pytest.mark.sampled(3)
 def test_a_stage_without_a_number_is_named(handed: Path, full_case: Case) -> None:
     """It is judged, as nothing may be right; where it is wrong, nothing was drawn. Margins are not judged."""
     named = 0

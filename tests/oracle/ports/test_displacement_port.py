@@ -38,6 +38,7 @@ def check_agreement(scene: Scene, params: Params, tolerance: float) -> None:
             np.testing.assert_array_equal(found[name], array, err_msg=name)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", SCENES)
 def test_port_agrees_with_the_reference(name: str, one_thread: None) -> None:
     check_agreement(*SCENES[name](), TOLERANCE)
@@ -61,6 +62,7 @@ def test_port_agrees_on_drawn_scenes(number: int, one_thread: None) -> None:
 SEARCHED = ("relief", "welsh", "mcguire", "tatarchuk", "cone", "relaxed_cone", "donnelly", "maximum_mipmap")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("method", SEARCHED)
 @pytest.mark.parametrize("name", ["slope", "tiles", "lamp"])
 def test_each_search_agrees_with_the_reference(method: str, name: str, one_thread: None) -> None:

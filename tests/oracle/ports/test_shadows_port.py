@@ -93,6 +93,7 @@ DESKTOPS = [variant for variant in VARIANTS if "," not in variant.profile]
 """Not those of a raster 16 times as coarse, or of bytes in place of floats, which are as right and farther away."""
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("variant", DESKTOPS, ids=lambda variant: variant.name)
 def test_a_variant_differs_little(variant: Variant) -> None:
     """A variant is another port, and stays near: but for a few pixels at edges, within a step of 8 bits or two."""
@@ -112,6 +113,7 @@ def test_variants_are_listed_as_they_should() -> None:
     assert {variant.profile.partition(",")[0] for variant in VARIANTS} <= set(PROFILES)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
 def test_a_mutant_goes_wrong_where_it_says(mutant: Mutant) -> None:
     """Its stage is the first one that differs from the plain port; it shows in the picture unless it is hidden there."""

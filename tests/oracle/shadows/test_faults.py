@@ -126,6 +126,7 @@ def test_a_fault_of_a_softened_map_is_found_where_it_is(fault: Callable[[Arrays]
     assert array in {row.array for row in rows if row.note == "differs"}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("fault", "stage", "array"), FAULTS, ids=[fault.__name__ for fault, _, _ in FAULTS])
 def test_a_fault_is_found_where_it_is(fault: Callable[[Arrays], None], stage: str, array: str) -> None:
     arrays = copied(plain(SOFT))

@@ -64,7 +64,7 @@ def _verdict(mutant: Mutant, name: str, stage: str | None, seen: bool) -> tuple[
     return stage, seen
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("mutant", MUTANTS, ids=lambda m: m.name)
 def test_a_bug_that_should_be_killed_is(mutant: Mutant) -> None:
     stage, _ = verdicts()[mutant.name]

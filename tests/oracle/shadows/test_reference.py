@@ -93,6 +93,7 @@ def test_sums_are_the_reference_s(name: str) -> None:
     np.testing.assert_allclose(sums.value, reference(name)["accumulate.shadow"], rtol=1e-12)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", CASES)
 def test_little_is_undecided(name: str) -> None:
     judged = image(name, picture(reference(name)))

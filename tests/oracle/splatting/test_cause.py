@@ -51,6 +51,7 @@ def test_the_bug_is_named(mutant: str) -> None:
     assert named(broken(mutant)) == [mutant]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mutant", PICTURED)
 def test_the_bug_is_named_by_the_picture_alone(mutant: str) -> None:
     assert named(picture(broken(mutant))) == [mutant]

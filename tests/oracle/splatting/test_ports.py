@@ -25,6 +25,7 @@ HIDDEN = 0.15
 """The most that may get away by the final image alone."""
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SMALL)
 @pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.name)
 def test_no_legal_variant_is_accused(variant: Variant, name: str) -> None:
