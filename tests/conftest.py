@@ -13,14 +13,14 @@ LONGEST = ("tests/test_notebooks.py", "tests/test_determinism.py", "tests/test_m
 
 @pytest.hookimpl(tryfirst=True)  # before pytest chooses by marks
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Of what is `sampled` all but every n-th is `long`; and the longest first.
+    """Of what is `sampled` all but every n-th, the middle of each n, is `long`; and the longest first.
 
     One that begins when the others are done leaves all cores but its own idle.
     """
     seen: Counter[str] = Counter()
     for item in items:
         sampled, name = item.get_closest_marker("sampled"), item.nodeid.partition("[")[0]
-        if sampled is not None and seen[name] % sampled.args[0]:
+        if sampled is not None and seen[name] % sampled.args[0] != sampled.args[0] // 2:
             item.add_marker("long")
         seen[name] += 1
     items.sort(key=lambda item: not item.nodeid.startswith(LONGEST))

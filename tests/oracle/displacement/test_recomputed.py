@@ -40,6 +40,7 @@ def test_corners(port: Port) -> None:
         assert near(legal[name].value, port.handed[name])
 
 
+@pytest.mark.sampled(4)
 @np.errstate(all="ignore")
 def test_fragments(port: Port) -> None:
     """Of every pixel that the reference covers there is the same candidate, at the same place."""

@@ -68,6 +68,7 @@ def tried(folder: Path, path: Path_, value: Any, blamed: str = "case.json: scene
             (folder / name).write_bytes(data)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("change", [1.0 + 1e-9, 1.5])
 @pytest.mark.parametrize("field", ["near", "far"])
 def test_planes_of_every_camera(folder: Path, field: str, change: float) -> None:

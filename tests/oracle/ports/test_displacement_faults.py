@@ -91,6 +91,7 @@ DESKTOPS = [variant for variant in VARIANTS if "," not in variant.profile]
 """Not those of a raster 16 times as coarse, or of bytes in place of floats, which are as right and farther away."""
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("variant", DESKTOPS, ids=lambda variant: variant.name)
 def test_variant_is_near_the_reference(variant: Variant, one_thread: None) -> None:
     assert variant.profile in PROFILES

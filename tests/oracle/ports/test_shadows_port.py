@@ -73,6 +73,7 @@ def check_exact(case: Case) -> None:
         np.testing.assert_allclose(ours[name], array, rtol=1e-9, atol=1e-9, err_msg=name)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", CASES)
 def test_in_doubles_it_is_the_reference(name: str) -> None:
     check_exact(CASES[name]())
