@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ibr_ref.io.files import contents, naming
+from ibr_ref.oracle.accept.coverage import RASTER
 from ibr_ref.oracle.device import PROFILES, Device
 from ibr_ref.scene import checks
 
@@ -36,8 +37,12 @@ class Number(NamedTuple):
 
 
 def _subpixels(device: Device, bits: int) -> dict[str, Any]:
-    """A splat's border moves by steps of the raster."""
-    return {"subpixel_bits": bits, "splat_border": device.splat_border * 2.0 ** (device.subpixel_bits - bits)}
+    """A splat's border moves by steps of the raster, and its centre is snapped to another raster than the reference's."""
+    if bits == device.subpixel_bits:
+        return {"subpixel_bits": bits}
+    scaled, apart = device.splat_border * 2.0 ** (device.subpixel_bits - bits), 0.5 * (2.0**-bits + 1.0 / RASTER)
+    # A step of a coarser raster holds the reference's rounding, one of a finer raster does not.
+    return {"subpixel_bits": bits, "splat_border": max(scaled, apart) if 2.0**bits < RASTER else scaled + apart}
 
 
 NUMBERS: dict[str, Number] = {

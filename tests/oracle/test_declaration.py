@@ -105,6 +105,16 @@ def test_a_right_port_of_four_bits_passes(name: str) -> None:
     assert "would be right with subpixel_bits=4: declare it if your device has it." in failed.words()
 
 
+@pytest.mark.parametrize("bits", [4, 6, 11, 16])
+@pytest.mark.parametrize("profile", ["ieee32", "d3d11", "gl"])
+def test_splats_on_any_raster(profile: str, bits: int) -> None:
+    """By ieee32 their centres were taken for snapped to 1/256 whatever was declared, and by others on finer rasters."""
+    for name in ("splatting-discs", "splatting-sprites", "splatting-quads"):
+        case, arrays = drawn(name, Policy(subpixel_bits=bits))
+        found = oracle.examine(case, arrays, profile=f"{profile},subpixel_bits={bits}", name_causes=False).verdict
+        assert found.outcome is Outcome.PASS, name
+
+
 @pytest.mark.long
 def test_a_right_port_that_filters_bytes_in_bytes_passes() -> None:
     case, arrays = drawn("displacement-low", Policy(filtered_bytes=True, weight_bits=8))
