@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.jit import LANES, device
-from ibr_ref.pipeline.sampling import fetch
 
 
 @device
@@ -21,16 +20,11 @@ def in_domain(u, v, bounded):
 
 
 @device
-def sample(repeat, texels, columns, rows, bounded, u, v, d):
-    """Whether the sample is at or below the surface; its margin |d - D| (infinite at d = 0 and d = 1); H, 0 outside."""
-    if not in_domain(u, v, bounded):
-        return False, np.inf, 0.0
-    return sampled(fetch(texels, columns, rows, repeat, u, v), bounded, u, v, d)
-
-
-@device
 def sampled(height, bounded, u, v, d):
-    """The same of a height that has been fetched, wherever that was."""
+    """Of a height that was fetched at (u, v), wherever that is: whether the sample is at or below the surface.
+
+    And its margin |d - D|, infinite at d = 0 and d = 1; H, 0 outside.
+    """
     if not in_domain(u, v, bounded):
         return False, np.inf, 0.0
     depth = 1.0 - height

@@ -56,6 +56,14 @@ class Judgement:
             raise ValueError(f"judgement of {self.stage}: arrays of different shapes {sorted(shapes)}")
 
 
+def spread_out(flags: Sequence[Bools], count: int) -> Bools:
+    """(n,) of the elements of each of the flags (n,) some from everywhere: so many, fewer than twice as many, or all."""
+    among = np.zeros_like(flags[0])
+    for some in map(np.flatnonzero, flags):
+        among[some[:: max(1, len(some) // count)]] = True
+    return among
+
+
 def up_to(judgements: Iterator[Judgement], *, first_wrong: bool) -> list[Judgement]:
     """All of them, or those up to the first that has a wrong element."""
     found = []

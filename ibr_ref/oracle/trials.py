@@ -6,12 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.declaration import ANY, NUMBERS, Declaration
 from ibr_ref.oracle.device import LOOSEST, PROFILES, Device
-from ibr_ref.oracle.judgement import Glances, Handed, Judgement
+from ibr_ref.oracle.judgement import Glances, Handed, Judgement, spread_out
 from ibr_ref.oracle.referees import referee
 
 LIKELY = [name for name, device in PROFILES.items() if device.likely]
@@ -126,9 +124,7 @@ def _refuted(case: Case, handed: Handed, failed: Trial, more: Mapping[str, Any])
     if at is None or not isinstance(judge_of, Glances):
         return False
     judgement = failed.judgements[at]
-    wrong = np.flatnonzero(judgement.wrong)
-    few = np.zeros(judgement.wrong.size, np.bool_)
-    few[wrong[:: max(1, len(wrong) // FEW)]] = True
+    few = spread_out([judgement.wrong.reshape(-1)], FEW)
     return not judge_of.explains(case, _with(failed.device, more), handed, judgement.part or judgement.stage, few)
 
 

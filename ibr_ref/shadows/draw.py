@@ -21,7 +21,7 @@ from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.sampling import footprint, lerp
-from ibr_ref.pipeline.triangles import SUBPIXELS, Edges, columns_in_row, edges_in_row
+from ibr_ref.pipeline.triangles import SUBPIXELS, Edges, columns_in_row, edges_in_row, fall_of
 from ibr_ref.shadows.spans import live_columns, solid_range
 
 BAND_ROWS = 8
@@ -89,11 +89,11 @@ def _set_up(window, size, source, other, mesh):
     edges, box, solid = mesh
     for t in range(len(window)):
         x, y = window[t, :, 0], window[t, :, 1]
-        here, below = edges_in_row(x, y, 0), edges_in_row(x, y, 1)
+        here, fall = edges_in_row(x, y, 0), fall_of(x, y)
         for k in range(9):
             edges[t, k] = here[k]
         for k in range(3):
-            edges[t, 9 + k] = below[k] - here[k]
+            edges[t, 9 + k] = fall[k]
         box[t, 0], box[t, 1] = min(y) // SUBPIXELS, max(y) // SUBPIXELS
         box[t, 2], box[t, 3] = min(x) // SUBPIXELS, max(x) // SUBPIXELS
         solid[t] = _may_be_solid(source, size, t)

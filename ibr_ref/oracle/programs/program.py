@@ -21,6 +21,8 @@ PROGRAMS = __name__.rpartition(".")[0]
 Path = tuple[str | int, ...]
 """Where a number of a case stands: fields and indices from "scene" or "params" on, `EACH` for all of a sequence."""
 EACH = -1
+SAID = frozenset({"taken", "read_by", "_abc_impl"})
+"""What classes of programs say of themselves, beside names between underscores: no program computes by it."""
 
 
 def right(program: Any, *names: str) -> bool:
@@ -28,11 +30,15 @@ def right(program: Any, *names: str) -> bool:
     return all(getattr(type(program), name).__module__.startswith(PROGRAMS) for name in names)
 
 
+def own_names(kind: type[Any], right: type[Any]) -> set[str]:
+    """What a program with a bug has otherwise than the right one, but for what every class says of itself."""
+    names = {name for each in kind.__mro__ if not issubclass(right, each) for name in vars(each)}
+    return {name for name in names if name == "__init__" or not name.startswith("__")} - SAID
+
+
 def overridden(kind: type[Any], right: type[Any]) -> set[str]:
-    """The names of which a program with a bug has others than the right one."""
-    own = {name for each in kind.__mro__ if not issubclass(right, each) for name in vars(each)}
-    said = {name for name in own if name.startswith("__")}  # of every class; Python 3.13 has more of them than 3.11
-    return (own - said - {"taken", "read_by"}) | {*kind.read_by}
+    """The same, with the methods that read a number which it takes for another."""
+    return own_names(kind, right) | {*kind.read_by}
 
 
 def changed(whole: Any, path: Path, value: Any) -> Any:

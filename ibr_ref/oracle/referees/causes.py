@@ -23,7 +23,7 @@ from ibr_ref.oracle.faults.kinds import Mutant, PlainPort
 from ibr_ref.oracle.faults.taken import LOOKS_LIKE, Setting, suspects
 from ibr_ref.oracle.faults.vectors import Vector
 from ibr_ref.oracle.findings import Cause
-from ibr_ref.oracle.judgement import Explanation, Handed, Judgement
+from ibr_ref.oracle.judgement import Explanation, Handed, Judgement, spread_out
 from ibr_ref.oracle.referees.fitted import fitted, fitted_vector
 from ibr_ref.oracle.referees.pairs import Known, Likely, causes_of, named_together, together
 from ibr_ref.oracle.referees.suspects import MOST_ROWS, Inquiry, Suspects
@@ -58,7 +58,8 @@ class Numbers:
 
     def fitting(self, wrong: Judgement) -> Iterator[list[list[Mutant]]]:
         """And with those that its results look like: of each number some values, those of the fewest digits first."""
-        every, some = np.ones_like(wrong.wrong), _spread_out(wrong.wrong)
+        flat = wrong.wrong.reshape(-1)
+        every, some = np.ones_like(wrong.wrong), spread_out([flat, ~flat], LOOKED_AT).reshape(wrong.wrong.shape)
         continuous = [each for each in self.settings if not isinstance(each.value(self.case), int)]
         jumps = {each.jumps for each in continuous}
         first = {jump: self._drawn(self.port, wrong, every if jump else some) for jump in jumps}
@@ -98,8 +99,7 @@ class Numbers:
             allowed = setting.allows(self.case, value)
             return self._drawn(setting.port(self.port, value), wrong, among) if allowed else None
 
-        names = self._compared(wrong)
-        target, slack = _row(self.handed, names, among), _slack(self.handed, names, among)
+        target, slack = self._target(wrong, among)
         with np.errstate(all="ignore"):
             return fitted(float(setting.value(self.case)), first, draw, target, slack, jumps=setting.jumps)
 
@@ -107,10 +107,14 @@ class Numbers:
         def draw(value: Floats) -> Floats | None:
             return self._drawn(vector.port(self.port, value), wrong, among) if vector.allows(value) else None
 
-        names = self._compared(wrong)
-        target, slack = _row(self.handed, names, among), _slack(self.handed, names, among)
+        target, slack = self._target(wrong, among)
         with np.errstate(all="ignore"):
             return fitted_vector(vector.value, draw, target, slack)
+
+    def _target(self, wrong: Judgement, among: Bools) -> tuple[Floats, Floats]:
+        """(n,) what the port has of a stage, and how far that may be from plain results."""
+        names = self._compared(wrong)
+        return _row(self.handed, names, among), _slack(self.handed, names, among)
 
     def _drawn(self, kind: type[Any], wrong: Judgement, among: Bools) -> Floats:
         """(n,) what a program makes of a stage, in doubles."""
@@ -167,14 +171,6 @@ def _first_tier(suspects: Suspects, mutants: Sequence[Mutant], tiers: Sequence[C
         if found or not whole:
             return Explanation(causes=causes_of(found), given_up_after=None if whole else tried)
     return Explanation(causes=())
-
-
-def _spread_out(wrong: Bools) -> Bools:
-    """Wrong elements and right ones, from everywhere."""
-    among = np.zeros(wrong.size, np.bool_)
-    for some in (np.flatnonzero(wrong), np.flatnonzero(~wrong)):
-        among[some[:: max(1, len(some) // LOOKED_AT)]] = True
-    return among.reshape(wrong.shape)
 
 
 def _some(array: Any, among: Bools) -> Any:

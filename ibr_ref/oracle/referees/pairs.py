@@ -16,14 +16,13 @@ from ibr_ref.array_types import Bools
 from ibr_ref.oracle.faults.kinds import Mutant, PlainPort
 from ibr_ref.oracle.findings import Cause, Nearest
 from ibr_ref.oracle.judgement import Explanation
+from ibr_ref.oracle.programs.program import own_names
 from ibr_ref.oracle.referees.suspects import MOST_ROWS, Inquiry, Left, Suspects, ranked
 
 PROMISING, FIRST = 12, 3
 """Bugs by the gain at a few elements, and of these by that at some: the last are tried with every other."""
 AND = " and "
 """Between the names of two bugs."""
-ABOUT = ("taken", "read_by", "_abc_impl")
-"""What classes have that no program computes by, beside names between underscores."""
 
 
 class Likely(Protocol):
@@ -56,7 +55,7 @@ def composed(right: type[PlainPort], a: Mutant, b: Mutant, stage: str) -> Mutant
 
     None where both override the same method, or take the same number for another.
     """
-    if _own(a.port, right) & _own(b.port, right) or {*_taken(a)} & {*_taken(b)}:
+    if own_names(a.port, right) & own_names(b.port, right) or {*_taken(a)} & {*_taken(b)}:
         return None
     fields = {"taken": {**_taken(a), **_taken(b)}, "read_by": (*_read_by(a), *_read_by(b)), "__module__": __name__}
     kind = type("Both", (a.port, b.port), fields)
@@ -94,11 +93,8 @@ def together(suspects: Suspects, known: Known, likely: Likely) -> Explanation:
             second = others[pair]
             needed = _both_needed(suspects, pair, left, second, known.evidence)
             if needed and known.shows(first) and known.shows(second):
-                says = f"{first.fault} {second.fault}"
-                found.setdefault(
-                    frozenset((first.name, second.name)),
-                    Cause(name=pair.name, says=says, together=(first.name, second.name)),
-                )
+                names = first.name, second.name
+                found.setdefault(frozenset(names), Cause(name=pair.name, says=pair.fault, together=names))
     nearest = None if found or not best else _nearest(suspects, *best[0])
     return Explanation(causes=tuple(found.values()), nearest=nearest)
 
@@ -145,12 +141,6 @@ def _nearest(suspects: Suspects, mutant: Mutant, left: Left) -> Nearest | None:
 
 def _count(flags: Any) -> int:
     return int(np.count_nonzero(flags))
-
-
-def _own(kind: type[Any], right: type[Any]) -> set[str]:
-    """What a program with a bug has otherwise than the right one."""
-    names = {name for each in kind.__mro__ if not issubclass(right, each) for name in vars(each)}
-    return {name for name in names if name == "__init__" or not name.startswith("__")} - {*ABOUT}
 
 
 def _taken(mutant: Mutant) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ibr_ref.array_types import Bools, Ints
 from ibr_ref.oracle.faults.kinds import Mutant
-from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.judgement import Handed, Judgement, spread_out
 
 FEW, SOME = 6, 40
 """Wrong elements that are tried first, up to twice as many; and next, with as many right ones."""
@@ -112,7 +112,7 @@ class Suspects:
         """(n,) a few of the first, some of each of those that follow."""
         if self.stage not in self.inquiry.sampled:
             return []
-        return [_spread_out([first], FEW), _spread_out(then, SOME)]
+        return [spread_out([first], FEW), spread_out(then, SOME)]
 
     def survivors(
         self,
@@ -175,14 +175,6 @@ class Suspects:
         order = {name: i for i, name in enumerate(self.judgement.arrays)}
         places = np.array([*(order.get(name, 0) for name in judgement.arrays), 0])
         return np.asarray(places[judgement.blame.reshape(-1)])
-
-
-def _spread_out(flags: Sequence[Bools], count: int) -> Bools:
-    """(n,) of each of the flags so many elements, up to twice as many."""
-    among = np.zeros_like(flags[0])
-    for some in map(np.flatnonzero, flags):
-        among[some[:: max(1, len(some) // count)][: 2 * count]] = True
-    return among
 
 
 def ranked(gains: Mapping[Mutant, int], most: int) -> list[Mutant]:
