@@ -12,3 +12,10 @@ Indices = NDArray[np.int32]
 """Of vertices, texels and steps, as kernels keep them."""
 Bytes = NDArray[np.uint8]
 """Codes of colours, counts of samples."""
+
+Texels = NDArray[np.float64]
+"""(rows * columns,) or (rows * columns * 3,): a texture as kernels read it, flat, rows from v = 0."""
+Lanes = NDArray[np.float64]
+"""(LANES,): one number for each fragment of a wave."""
+Wrap = bool | None
+"""Of a texture: None clamps, True repeats; a type to the compiler, which leaves the other way out."""
