@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from ibr_ref.array_types import Floats
 from ibr_ref.displacement.cones import cone_map
 from ibr_ref.displacement.donnelly import distance_texture
-from ibr_ref.displacement.maximum_mipmap import Quadtree, build
 from ibr_ref.displacement.prepared import prepared
+from ibr_ref.displacement.quadtree import Quadtree, build
 from ibr_ref.scene import BasePolygon
 
 RELAXED = {"cone": False, "relaxed_cone": True}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ibr_ref import BasePolygon, Camera
-from ibr_ref.displacement.maximum_mipmap import build
+from ibr_ref.displacement.quadtree import build
 from tests.displacement.below import VIEWS, Below, compared
 from tests.displacement.height_field import Ray, first_inside, rational
 from tests.displacement.scenes import Array, block, camera, frame, noise, spike, square

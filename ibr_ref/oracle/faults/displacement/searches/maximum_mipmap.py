@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.maximum_mipmap import Quadtree, build
+from ibr_ref.displacement.quadtree import Quadtree, build
 from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Ints, Patch
 from ibr_ref.oracle.programs.displacement.searches.maximum_mipmap import HIT, Ends, MaximumMipmap, States, Walk

@@ -14,8 +14,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ibr_ref.displacement.maximum_mipmap import Quadtree
 from ibr_ref.displacement.port_maps import quadtree_of
+from ibr_ref.displacement.quadtree import Quadtree
 from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Ints, Patch
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.searches.below import Descent, Found
