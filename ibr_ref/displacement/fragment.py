@@ -6,16 +6,31 @@ stay in the cache; bands run in parallel, and each pixel belongs to one of them.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from ibr_ref.displacement.buffers import fragments_for, hits_for, rays_for, shades_for
+from ibr_ref.array_types import Floats, Indices, Wrap
+from ibr_ref.displacement.buffers import (
+    Fragments,
+    Hits,
+    Settings,
+    Shades,
+    Uniforms,
+    fragments_for,
+    hits_for,
+    rays_for,
+    shades_for,
+)
 from ibr_ref.displacement.exact import exact_search
 from ibr_ref.displacement.march import binary_search, heights_before, linear_search, mark_steep, place_hits
 from ibr_ref.displacement.margins import binary_margins, linear_border, linear_margins
-from ibr_ref.displacement.raster import count_fragments, rasterize
+from ibr_ref.displacement.maxima import Maxima
+from ibr_ref.displacement.raster import count_fragments, rasterize, take_fragments, take_hits
 from ibr_ref.displacement.rays import paper_rays, volume_rays
 from ibr_ref.displacement.relief import relief_search, texture_search
 from ibr_ref.displacement.resolve import (
+    Target,
     clear,
     depth_test,
     noted_depth_test,
@@ -26,20 +41,29 @@ from ibr_ref.displacement.resolve import (
 )
 from ibr_ref.displacement.self_shadow import self_shadow
 from ibr_ref.displacement.shade import albedos, facades, height_normals, light_hits, mapped_normals, slopes
-from ibr_ref.displacement.textures import Maps
+from ibr_ref.displacement.textures import Map, Maps
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
+from ibr_ref.pipeline.triangles import Triangles
 
 BUILT_IN = ("protruded", "exact", "relief", "texture")
 """Searches that this kernel has; the hits of others are found before (`compared`)."""
 PROTRUDED, EXACT, RELIEF, TEXTURE = range(4)
 
-BAND_PIXELS = 4096
-"""Pixels of a band, about: its arrays then take half a megabyte."""
+_BAND_PIXELS = 4096
+"""Of a band, about: its arrays then take half a megabyte."""
+
+
+def rows_of_a_band(width: int) -> int:
+    """Of a picture of so many columns."""
+    return max(1, _BAND_PIXELS // width)
 
 
 @device
-def search(repeat, keep, fragments, count, constants, settings, maps, hits):
+def search(
+    repeat: Wrap, keep: bool | None, fragments: Fragments, count: int, constants: Uniforms, settings: Settings,
+    maps: Maps, hits: Hits,
+) -> None:  # fmt: skip
     """Stage march: the hits of all fragments, by the method's search."""
     texels, columns, rows = maps.height
     if settings.method == TEXTURE:
@@ -72,18 +96,10 @@ def search(repeat, keep, fragments, count, constants, settings, maps, hits):
 
 
 @device
-def take(fragments, count, found, hits):
-    """Stage march where a search has been through all pixels before: its hits."""
-    for i in range(count):
-        pixel = fragments.pixel[i]
-        hits.linear_index[i], hits.hit_index[i] = found.linear_index[pixel], found.hit_index[pixel]
-        hits.u[i], hits.v[i], hits.h[i] = found.u[pixel], found.v[pixel], found.h[pixel]
-        hits.height_before[i] = found.height_before[pixel]
-        hits.margin[i], hits.domain_margin[i] = found.margin[pixel], found.domain_margin[pixel]
-
-
-@device
-def shade(repeat, keep, hits, count, constants, settings, maps, shades):
+def shade(
+    repeat: Wrap, keep: bool | None, hits: Hits, count: int, constants: Uniforms, settings: Settings, maps: Maps,
+    shades: Shades,
+) -> None:  # fmt: skip
     """Stage shade: colours of all hits."""
     texels, columns, rows = maps.height
     has_normals, has_facade = maps.normal.texels.size > 0, maps.facade.texels.size > 0
@@ -105,18 +121,24 @@ def shade(repeat, keep, hits, count, constants, settings, maps, shades):
 
 @device
 def _draw_band(
-    repeat, keep, found, triangles, faces, constants, settings, maps, patch_id, width, first_row, last_row, target
-):  # fmt: skip
-    count = count_fragments(triangles, width, first_row, last_row)
+    repeat: Wrap, keep: bool | None, covered: Any, bands: Any, found: Any, band: int,
+    triangles: Triangles, faces: Indices, constants: Uniforms, settings: Settings, maps: Maps, patch_id: int, width: int,
+    first_row: int, last_row: int, target: Target,
+) -> None:  # fmt: skip
+    if found is None:
+        count = count_fragments(triangles, width, first_row, last_row)
+    else:
+        count = bands[band, 1]
     if count == 0:
         return
     fragments, hits, shades = fragments_for(count), hits_for(count), shades_for(count)
     verdicts = np.empty(count, np.int8)
-    rasterize(triangles, faces, width, first_row, last_row, settings.polygon_depth, fragments)
     if found is None:
+        rasterize(triangles, faces, width, first_row, last_row, settings.polygon_depth, fragments, 0)
         search(repeat, keep, fragments, count, constants, settings, maps, hits)
     else:
-        take(fragments, count, found, hits)
+        take_fragments(covered, bands[band, 0], count, fragments)
+        take_hits(found, bands[band, 0], count, hits)
     project_hits(fragments, count, constants, settings, hits)
     if settings.method == PROTRUDED or settings.method == EXACT:
         mark_steep(count, settings, hits)
@@ -134,53 +156,29 @@ def _draw_band(
 
 @kernel
 def draw(
-    repeat,
-    keep,
-    found,
-    triangles,
-    faces,
-    constants,
-    settings,
-    heights,
-    colors,
-    normals,
-    facade,
-    maxima,
-    patch_id,
-    width,
-    height,
-    background,
-    target,
-):
+    repeat: Wrap, keep: bool | None, covered: Any, bands: Any, found: Any,
+    triangles: Triangles, faces: Indices, constants: Uniforms, settings: Settings,
+    heights: Map, colors: Map, normals: Map, facade: Map, maxima: Maxima,
+    patch_id: int, width: int, height: int, band_rows: int, background: Floats, target: Target,
+) -> None:  # fmt: skip
     """Draw one polygon into the target: patch_id 0 clears it first, band by band; others come over what is there.
 
-    repeat: None (clamp) or True, the wrap mode of its maps. keep: None or True, all stage arrays are wanted, not the
-    picture alone. found: None, or the hits of all pixels, by a search that has been (`compared`). All three are types to the
-    compiler: what they rule out is not even compiled. faces: the face number of
-    each quad. heights, colors, normals, facade: `Map`s (one by one: Numba's parallel loops take no nested tuples). The
-    bands are taken in an order that gives every thread an even sample of the picture.
+    repeat: the wrap mode of its maps. keep: None or True, all stage arrays are wanted, not the picture alone.
+    covered, bands, found: None, or `Fragments` of all bands of so many rows, (B, 2) where each has them (`Covered`), and
+    their `Hits`, by a search that has been (`compared`). All these are types to the compiler: what they rule out is not even
+    compiled. faces: (Q,) the face number of each quad. heights, colors, normals, facade: one by one, as Numba's parallel
+    loops take no nested tuples. background: (3,). The bands are taken in an order that gives every thread an even sample of
+    the picture.
     """
-    band_rows = max(1, BAND_PIXELS // width)
-    bands = (height + band_rows - 1) // band_rows
-    stride = stride_of(bands)
-    for turn in prange(bands):
-        first_row = (turn * stride) % bands * band_rows
-        last_row = min(height, first_row + band_rows)
+    count = (height + band_rows - 1) // band_rows
+    stride = stride_of(count)
+    for turn in prange(count):
+        band = (turn * stride) % count
+        first_row, last_row = band * band_rows, min(height, (band + 1) * band_rows)
         maps = Maps(heights, colors, normals, facade, maxima)
         if patch_id == 0:
             clear(target, background, first_row * width, last_row * width)
         _draw_band(
-            repeat,
-            keep,
-            found,
-            triangles,
-            faces,
-            constants,
-            settings,
-            maps,
-            patch_id,
-            width,
-            first_row,
-            last_row,
-            target,
-        )
+            repeat, keep, covered, bands, found, band, triangles, faces, constants, settings, maps, patch_id, width,
+            first_row, last_row, target,
+        )  # fmt: skip

@@ -5,14 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ibr_ref.array_types import Indices, Ints
 from ibr_ref.displacement import compared, inputs
 from ibr_ref.displacement.buffers import Settings
 from ibr_ref.displacement.contract import FRAGMENT_FIELDS
-from ibr_ref.displacement.fragment import BUILT_IN, draw
+from ibr_ref.displacement.fragment import BUILT_IN, draw, rows_of_a_band
 from ibr_ref.displacement.inputs import Params, Scene
 from ibr_ref.displacement.maxima import build
 from ibr_ref.displacement.patch_space import uniforms
 from ibr_ref.displacement.prepared import prepared
+from ibr_ref.displacement.raster import cover
 from ibr_ref.displacement.resolve import Target, resolve_margins, target_for
 from ibr_ref.displacement.textures import Map, Maps
 from ibr_ref.displacement.vertex import Faces, vertex_stage
@@ -42,23 +44,26 @@ def render(
     first, stop = checks.rows(rows, camera.height)
     target = target_for(camera.width * (stop - first), stages)
     background = np.array(scene.background, np.float64)
-    fetches: list[NDArray[np.int32]] = []
+    band_rows = rows_of_a_band(camera.width)
+    fetches: list[Indices] = []
     for patch_id, (polygon, quads) in enumerate(zip(scene.polygons, faces, strict=True)):
         clipped = clip_triangles(quads.clip, quads.patch, quads.triangles, camera.width, camera.height)
         triangles = shifted(set_up(clipped, camera.width, camera.height), first, stop)
         repeat = True if polygon.domain == "repeat" else None
         keep = True if stages else None
         settings = _settings(params, polygon)
-        maps, hits = _maps(polygon), None
-        room = SEARCHES[params.method].room
+        maps, room = _maps(polygon), SEARCHES[params.method].room
+        fragments = bands = hits = None
         if room is not None:
-            hits, counts = compared.search(
-                room, params, polygon, maps.height, constants[patch_id], triangles, camera.width, stop - first
-            )  # fmt: skip
-            fetches.append(counts)
+            fragments, bands = cover(
+                triangles, quads.numbers, camera.width, stop - first, band_rows, settings.polygon_depth
+            )
+            hits, counts = compared.search(room, params, polygon, maps.height, constants[patch_id], fragments)
+            if stages:
+                fetches.append(_by_pixel(fragments.pixel, counts, camera.width * (stop - first)))
         draw(
-            repeat, keep, hits, triangles, quads.numbers, constants[patch_id], settings, *maps, patch_id,
-            camera.width, stop - first, background, target,
+            repeat, keep, fragments, bands, hits, triangles, quads.numbers, constants[patch_id], settings, *maps, patch_id,
+            camera.width, stop - first, band_rows, background, target,
         )  # fmt: skip
     size = (stop - first, camera.width)
     return Frame(
@@ -66,6 +71,13 @@ def render(
         depth=target.depth.reshape(size),
         stages=_stages(faces, target, size, fetches) if stages else {},
     )
+
+
+def _by_pixel(pixel: Ints, counts: Indices, pixels: int) -> Indices:
+    """Fetches of a polygon's fragments, which cover no pixel twice, as a picture, flat."""
+    fetches = np.zeros(pixels, np.int32)
+    fetches[pixel[pixel >= 0]] = counts[pixel >= 0]
+    return fetches
 
 
 def _settings(params: Params, polygon: BasePolygon) -> Settings:
@@ -106,7 +118,7 @@ def _maps(polygon: BasePolygon) -> Maps:
 
 
 def _stages(
-    faces: list[Faces], target: Target, size: tuple[int, int], fetches: list[NDArray[np.int32]]
+    faces: list[Faces], target: Target, size: tuple[int, int], fetches: list[Indices]
 ) -> dict[str, NDArray[np.generic]]:
     """The stage arrays by their names in the contract. fetches: of the compared systems, for each polygon."""
     resolve_margins(target, target.second)

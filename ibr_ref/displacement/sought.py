@@ -14,11 +14,11 @@ from ibr_ref.displacement.textures import Map
 
 
 class Found(NamedTuple):
-    """What a search finds, one element a pixel."""
+    """What a search finds, one element a fragment."""
 
     hits: Hits
     fetches: NDArray[np.int32]
-    """Texture fetches of the search; 0 where the polygon does not cover the pixel."""
+    """Texture fetches of the search."""
 
 
 class Sought(NamedTuple):
@@ -31,7 +31,7 @@ class Sought(NamedTuple):
     repeat: bool | None
     """True or None, a type to the compiler: the map repeats, or it ends at its border."""
     points: Floats
-    """(3, P): the pixels' points on the polygon, NaN where it does not cover them."""
+    """(3, F): the fragments' points on the polygon; NaN between bands."""
     constants: Uniforms
     params: Any
     """Params, which a file with kernels does not name."""
