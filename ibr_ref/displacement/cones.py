@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats, Integer, Texels, Wrap
+from ibr_ref.array_types import Floats, Texels, Whole, Wrap
 from ibr_ref.displacement.below import in_domain
 from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
@@ -67,8 +67,8 @@ def _way_out(
 
 @device
 def _in_block(
-    repeat: Wrap, relaxed: bool | None, texels: Texels, columns: float, rows: float, i: int, j: int, first_row: Integer,
-    first_column: Integer, shift_u: float, shift_v: float, best: float,
+    repeat: Wrap, relaxed: bool | None, texels: Texels, columns: float, rows: float, i: int, j: int, first_row: Whole,
+    first_column: Whole, shift_u: float, shift_v: float, best: float,
 ) -> float:  # fmt: skip
     """The narrowest cone of texel (i, j) by the texels of a block, of the copy of the map that is shifted so."""
     u, v, height = (j + 0.5) / columns, (i + 0.5) / rows, texels[i * np.int64(columns) + j]

@@ -11,12 +11,10 @@ Arrays: points (3, P), eye (4,), found and fetches (P,), one a pixel, as in `sou
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats, Indices, Wrap
+from ibr_ref.array_types import Floats, Indices, Whole, Wrap
 from ibr_ref.displacement.below import keep, view_ray
 from ibr_ref.displacement.buffers import Hits
 from ibr_ref.displacement.sought import Sought
@@ -57,7 +55,7 @@ def fetch_distance(
     z = clamped(d * layers - 0.5, 0.0, layers - 1.0)
     upper = np.floor(z)
     lower = min(upper + 1.0, layers - 1.0)
-    area: Any = np.int64(columns) * np.int64(rows)  # to mypy, a signed width and an unsigned one make anything
+    area: Whole = np.int64(columns) * np.int64(rows)
     return lerp(
         _layer(texels, np.int64(upper) * area, i00, i10, i01, i11, fx, fy),
         _layer(texels, np.int64(lower) * area, i00, i10, i01, i11, fx, fy),

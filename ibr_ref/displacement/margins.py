@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.array_types import Floats, Indices, Integer, Lanes, Texels, Wrap
+from ibr_ref.array_types import Floats, Indices, Lanes, Texels, Whole, Wrap
 from ibr_ref.displacement.buffers import Rays, Settings, load_rays
 from ibr_ref.displacement.march import STRETCH, clearances, wave_bounds
 from ibr_ref.displacement.maxima import Maxima
@@ -26,7 +26,7 @@ def _distance_to_border(u: float, v: float) -> float:
 
 
 @device
-def _last_steps(rays: Rays, linear_index: Indices, first: int, steps: int, last: Lanes) -> Integer:
+def _last_steps(rays: Rays, linear_index: Indices, first: int, steps: int, last: Lanes) -> Whole:
     """The last step that each lane of a wave was tested at, -1 where the ray does not go down; the largest of them."""
     stop, h = lanes(), lanes()
     load_indices(linear_index, first, stop)

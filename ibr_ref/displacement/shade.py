@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.array_types import Floats, Texels, Wrap
+from ibr_ref.array_types import Floats, Texels, Vector3, Wrap
 from ibr_ref.displacement.buffers import Hits, Shades, Uniforms
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.fetches import fetch_color_wave, fetch_cross_wave
@@ -120,7 +120,7 @@ def albedos(repeat: Wrap, hits: Hits, count: int, texels: Texels, columns: float
 
 
 @device
-def _horizontal(constants: Uniforms, along_u: float, along_v: float) -> tuple[float, float, float]:
+def _horizontal(constants: Uniforms, along_u: float, along_v: float) -> Vector3:
     """along_u U + along_v V, normalized; n where that is zero (the eye straight above)."""
     axes, n = constants.axes, constants.frame[2]
     x, y, z = unit(
@@ -132,9 +132,7 @@ def _horizontal(constants: Uniforms, along_u: float, along_v: float) -> tuple[fl
 
 
 @device
-def _wall(
-    constants: Uniforms, g_u: float, g_v: float, u: float, v: float
-) -> tuple[tuple[float, float, float], bool, float]:
+def _wall(constants: Uniforms, g_u: float, g_v: float, u: float, v: float) -> tuple[Vector3, bool, float]:
     """Normal of the wall at a steep hit, whether it faces u (else v), and the margin of that decision."""
     length_u, length_v = constants.lengths[0], constants.lengths[1]
     if g_u == 0.0 and g_v == 0.0:  # no slope to go by: the wall faces the eye

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.array_types import Floats, Indices, Integer, Texels, Wrap
+from ibr_ref.array_types import Floats, Indices, Texels, Whole, Wrap
 from ibr_ref.displacement.below import border, distance_to_eye, in_domain, keep, view_ray
 from ibr_ref.displacement.buffers import Hits, Uniforms
 from ibr_ref.displacement.sought import Sought
@@ -40,7 +40,7 @@ def _march(
     bounded = repeat is None
     cosine = constants.scale / distance_to_eye(constants, along_u, along_v)
     count = np.int64(most + (least - most) * cosine)  # HLSL's lerp: exact where both are the same
-    step: Integer
+    step: Whole
     margin, nearest, before, step, depth = np.inf, np.inf, 1.0, count, 1.0
     for k in range(1, count + 1):
         ray = 1.0 - k / count

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats, Indices, Integer, Ints
+from ibr_ref.array_types import Floats, Indices, Ints
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.memory import arrays
@@ -117,7 +117,7 @@ def _note(row: int, column: int, z: float, target: Blend) -> None:
 
 
 @device
-def _test(row: int, column: int, z: float, distance: float, index: Integer, target: Blend) -> None:
+def _test(row: int, column: int, z: float, distance: float, index: np.int32, target: Blend) -> None:
     """Depth test and write."""
     if passes(z, target.depth[row, column]):
         target.depth[row, column], target.distance[row, column] = z, distance

@@ -7,15 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.array_types import Floats, Lanes
+from ibr_ref.array_types import Floats, Lanes, Vector3, Vector4
 from ibr_ref.jit import LANES, device
-
-Homogeneous = tuple[float, float, float, float]
-"""x, y, z and w, as scalars."""
 
 
 @device
-def unit(x: float, y: float, z: float) -> tuple[float, float, float]:
+def unit(x: float, y: float, z: float) -> Vector3:
     """The vector divided by its length; zero stays zero."""
     length = np.sqrt(x * x + y * y + z * z)
     length = length if length > 0.0 else 1.0
@@ -23,13 +20,13 @@ def unit(x: float, y: float, z: float) -> tuple[float, float, float]:
 
 
 @device
-def homogeneous(array: Floats) -> Homogeneous:
+def homogeneous(array: Floats) -> Vector4:
     """A homogeneous point or direction (4,) as scalars, which loops over lanes need not read again."""
     return array[0], array[1], array[2], array[3]
 
 
 @device
-def towards(source: Homogeneous, x: float, y: float, z: float) -> tuple[float, float, float]:
+def towards(source: Vector4, x: float, y: float, z: float) -> Vector3:
     """Unit vector from a world point towards a homogeneous one."""
     if source[3] == 0.0:
         return source[0], source[1], source[2]
@@ -38,7 +35,7 @@ def towards(source: Homogeneous, x: float, y: float, z: float) -> tuple[float, f
 
 @device
 def light_wave(
-    light: Homogeneous, eye: Homogeneous, specular: float, exponent: int, x: Lanes, y: Lanes, z: Lanes, nx: Lanes,
+    light: Vector4, eye: Vector4, specular: float, exponent: int, x: Lanes, y: Lanes, z: Lanes, nx: Lanes,
     ny: Lanes, nz: Lanes, lit: Lanes, cosine: Lanes, power: Lanes, shine: Lanes,
 ) -> None:  # fmt: skip
     """n.l and the highlight of a wave: world points (x, y, z) with unit normals n, lit 1, or 0 in shadow.

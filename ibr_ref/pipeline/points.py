@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats, Indices, Integer, Ints
+from ibr_ref.array_types import Floats, Indices, Ints
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.memory import arrays
@@ -173,7 +173,9 @@ def _sort(spans: Spans, ends: Ints, members: Indices) -> None:
 
 
 @device
-def _test(row: Integer, column: Integer, z: float, index: Integer, splat: Indices, depth: Floats) -> None:
+def _test(
+    row: int | np.uint32, column: int | np.uint32, z: float, index: np.int32, splat: Indices, depth: Floats
+) -> None:
     """Depth test and write, without a branch: about every second one passes, which no processor can predict."""
     stored = depth[row, column]
     nearer = passes(z, stored)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats, Integer, Ints
+from ibr_ref.array_types import Floats, Ints, Whole
 from ibr_ref.jit import device, routine
 from ibr_ref.pipeline.clip import ClippedTriangles
 
@@ -161,7 +161,7 @@ def moved_down(edges: Edges, fall: tuple[int, int, int]) -> Edges:
 
 
 @device
-def columns_of(xs: Corners, width: int) -> tuple[Integer, Integer]:
+def columns_of(xs: Corners, width: int) -> tuple[Whole, Whole]:
     """The columns [first, stop) of the picture whose centres lie between the corners: a triangle covers no other."""
     low, high, half = min(xs[0], xs[1], xs[2]), max(xs[0], xs[1], xs[2]), SUBPIXELS // 2
     first = max(np.int64(0), (low - half + SUBPIXELS - 1) // SUBPIXELS)
@@ -169,7 +169,7 @@ def columns_of(xs: Corners, width: int) -> tuple[Integer, Integer]:
 
 
 @device
-def _narrow(value: int, step: int, least: int, first: Integer, stop: Integer) -> tuple[Integer, Integer]:
+def _narrow(value: int, step: int, least: int, first: Whole, stop: Whole) -> tuple[int, int]:
     """The columns of [first, stop) where value + column * step >= least."""
     if stop - first <= FEW_COLUMNS:
         while first < stop and value + step * first < least:
@@ -185,13 +185,13 @@ def _narrow(value: int, step: int, least: int, first: Integer, stop: Integer) ->
 
 
 @device
-def columns_in_row(edges: Edges, width: int) -> tuple[Integer, Integer]:
+def columns_in_row(edges: Edges, width: int) -> tuple[int, int]:
     """The columns [first, stop) of the picture that the triangle covers in this row."""
     return columns_within(edges, np.int64(0), np.int64(width))
 
 
 @device
-def columns_within(edges: Edges, first: Integer, stop: Integer) -> tuple[Integer, Integer]:
+def columns_within(edges: Edges, first: Whole, stop: Whole) -> tuple[int, int]:
     """Those of [first, stop)."""
     first, stop = _narrow(edges.e0, edges.step0, edges.least0, first, stop)
     first, stop = _narrow(edges.e1, edges.step1, edges.least1, first, stop)
@@ -205,9 +205,7 @@ def _unit(a: float) -> bool:
 
 
 @device
-def fill_varyings(
-    edges: Edges, first: Integer, stop: Integer, corners: Floats, w: Floats, out: Floats, start: int
-) -> None:
+def fill_varyings(edges: Edges, first: int, stop: int, corners: Floats, w: Floats, out: Floats, start: int) -> None:
     """Perspective-correct varyings with the values `corners` (3, K), for the columns [first, stop), into out[:, start:].
 
     A varying that is the same at all corners and 0 or 1 is so exactly, by the same formula: it needs no division. Where the
@@ -238,7 +236,7 @@ def fill_varyings(
 
 
 @device
-def fill_depth(edges: Edges, first: Integer, stop: Integer, z: Floats, out: Floats, out_first: int) -> None:
+def fill_depth(edges: Edges, first: int, stop: int, z: Floats, out: Floats, out_first: int) -> None:
     """Write the window depth, z (3,) at the corners, for the columns [first, stop) to out (F,), from out_first on."""
     z0, z1, z2 = z[0], z[1], z[2]
     total = np.float64(edges.e0 + edges.e1 + edges.e2)
