@@ -1,8 +1,11 @@
-"""The disk cache of kernels: keyed by every source that a kernel can be made of, and by no other."""
+"""The disk cache of kernels: keyed by every source that a kernel can be made of, and by no other. What kernels say."""
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import os
+import pkgutil
 import subprocess
 import sys
 import tomllib
@@ -12,6 +15,7 @@ from typing import Any
 
 import pytest
 
+import ibr_ref
 from ibr_ref import jit
 
 ROOT = Path(__file__).parents[1]
@@ -44,6 +48,30 @@ def test_the_room_is_that_of_the_function_s_module() -> None:
 
 def test_rooms_have_keys_of_their_own() -> None:
     assert len({jit._digest(room) for room in ("", "pipeline", "displacement")}) == 3
+
+
+# --- Annotations -------------------------------------------------------------------------------------------------------
+
+ANNOTATED = ("ibr_ref.pipeline", "ibr_ref.displacement")
+"""Packages whose kernels say their types, all of them but these modules."""
+NOT_YET = tuple(f"ibr_ref.displacement.{name}" for name in ("below", "fragment", "maximum_mipmap", "raster"))
+
+
+def test_kernels_say_what_they_take_and_return() -> None:
+    for found in pkgutil.walk_packages(ibr_ref.__path__, "ibr_ref."):
+        if found.name.startswith(ANNOTATED):
+            importlib.import_module(found.name)
+    silent, asked = [], 0
+    for compiled in jit.functions:
+        function = getattr(compiled, "py_func", compiled)
+        module = function.__module__
+        if not module.startswith(ANNOTATED) or module in NOT_YET:
+            continue
+        asked += 1
+        missing = {*inspect.signature(function).parameters, "return"} - set(function.__annotations__)
+        silent += [f"{module}.{function.__name__}: {', '.join(sorted(missing))}"] if missing else []
+    assert asked > 100
+    assert silent == []
 
 
 # --- Names of Numba that it does not promise ---------------------------------------------------------------------------

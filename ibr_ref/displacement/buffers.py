@@ -1,4 +1,4 @@
-"""Arrays between the stages: one element a fragment, in submission order.
+"""Arrays between the stages: one element a fragment, (F,), in submission order.
 
 A band of the picture is processed at a time, so that these arrays stay in the cache. Their lengths are multiples of
 LANES: the last wave runs over the end, into elements that nobody reads.
@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Bools, Floats, Indices
+from ibr_ref.array_types import Bools, Floats, Indices, Lanes
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.waves import load
 
@@ -129,7 +129,7 @@ class Shades(NamedTuple):
 
 
 @device
-def load_rays(rays, first, u, v, h, du, dv, dh):
+def load_rays(rays: Rays, first: int, u: Lanes, v: Lanes, h: Lanes, du: Lanes, dv: Lanes, dh: Lanes) -> None:
     """Copy a wave's rays to its lanes."""
     load(rays.u, first, u)
     load(rays.v, first, v)
@@ -140,19 +140,19 @@ def load_rays(rays, first, u, v, h, du, dv, dh):
 
 
 @device
-def over_polygon(u, v, h):
+def over_polygon(u: float, v: float, h: float) -> bool:
     """Whether a fragment's point lies on the polygon itself: such a ray always hits something."""
     return (h == 0.0) & (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0)
 
 
 @device
-def padded(count):
+def padded(count: int) -> int:
     """The smallest multiple of LANES that is not below count."""
     return (count + LANES - 1) // LANES * LANES
 
 
 @device
-def fragments_for(count):
+def fragments_for(count: int) -> Fragments:
     """Fragments for a band; those that only a wave's rest reads are zero, which is harmless."""
     size = padded(count)
     fragments = Fragments(np.empty(size, np.int64), np.empty(size, np.int32), np.empty((3, size)), np.empty(size))
@@ -162,14 +162,14 @@ def fragments_for(count):
 
 
 @device
-def rays_for(count):
+def rays_for(count: int) -> Rays:
     """Rays for a band."""
     size = padded(count)
     return Rays(np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size))
 
 
 @device
-def hits_for(count):
+def hits_for(count: int) -> Hits:
     """Hits for a band; the margins start at infinity (no decision was close)."""
     size = padded(count)
     return Hits(
@@ -188,7 +188,7 @@ def hits_for(count):
 
 
 @device
-def shades_for(count):
+def shades_for(count: int) -> Shades:
     """Shades for a band."""
     size = padded(count)
     return Shades(

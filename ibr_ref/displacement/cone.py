@@ -3,13 +3,17 @@
 With the ray's speed m = |(v_u, v_v)| / v_h in (u, v) per depth, a cone of ratio c and the ray D - d above its apex, the ray
 leaves the cone after c (D - d) / (m + c) of depth. N steps from d = 0, with height and ratio fetched bilinearly from one
 texture (`cones` makes the ratios); the hit is where the last one ends, at or above the surface.
+
+Arrays: points (3, P), eye (4,), found and fetches (P,), one a pixel, as in `sought.Sought`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats, Indices, Lanes, Texels, Wrap
 from ibr_ref.displacement.below import keep, view_rays
+from ibr_ref.displacement.buffers import Hits
 from ibr_ref.displacement.cones import cone_ratios
 from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import LANES, device, kernel, prange
@@ -18,8 +22,11 @@ from ibr_ref.pipeline.waves import lanes
 
 
 @device
-def cone_steps(repeat, texels, ratios, columns, rows, u, v, along_u, along_v, steps, depth):
-    """Depths of a wave after so many cone steps from the polygon."""
+def cone_steps(
+    repeat: Wrap, texels: Texels, ratios: Texels, columns: float, rows: float, u: Lanes, v: Lanes, along_u: Lanes,
+    along_v: Lanes, steps: int, depth: Lanes,
+) -> None:  # fmt: skip
+    """Depths of a wave after so many cone steps from the polygon. ratios: of the texels."""
     speed, p_u, p_v, height, ratio = lanes(), lanes(), lanes(), lanes(), lanes()
     for lane in range(LANES):
         speed[lane] = np.sqrt(along_u[lane] * along_u[lane] + along_v[lane] * along_v[lane])
@@ -36,7 +43,11 @@ def cone_steps(repeat, texels, ratios, columns, rows, u, v, along_u, along_v, st
 
 
 @device
-def _trace(repeat, points, first, eye, texels, ratios, columns, rows, steps, found, fetches):
+def _trace(
+    repeat: Wrap, points: Floats, first: int, eye: Floats, texels: Texels, ratios: Texels, columns: float, rows: float,
+    steps: int, found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
+    """Hits of a wave of pixels."""
     u, v, along_u, along_v, depth = lanes(), lanes(), lanes(), lanes(), lanes()
     count, seen = view_rays(points, first, eye, u, v, along_u, along_v)
     if not seen:
@@ -50,7 +61,10 @@ def _trace(repeat, points, first, eye, texels, ratios, columns, rows, steps, fou
 
 
 @kernel
-def cone_search(repeat, points, eye, texels, ratios, columns, rows, steps, found, fetches):
+def cone_search(
+    repeat: Wrap, points: Floats, eye: Floats, texels: Texels, ratios: Texels, columns: float, rows: float, steps: int,
+    found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
     """Hits of all pixels. steps: N."""
     for wave in prange((len(fetches) + LANES - 1) // LANES):
         _trace(repeat, points, wave * LANES, eye, texels, ratios, columns, rows, steps, found, fetches)

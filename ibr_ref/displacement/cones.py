@@ -9,6 +9,8 @@ A ratio is radius in (u, v) per height in h, at most 1, of an upright cone with 
 
 A relaxed ratio is never below that of the plain cone, which rules out most texels unseen; blocks of texels likewise, by
 their largest height. Without that the cost of a map of n x n texels would be n^4.
+
+Arrays: maxima (block_rows * block_columns,); ratios as texels.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Texels, Whole, Wrap
 from ibr_ref.displacement.below import in_domain
 from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
@@ -38,7 +41,10 @@ def block_maxima(heights: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @device
-def _way_out(repeat, texels, columns, rows, u, v, height, to_u, to_v, top, best):
+def _way_out(
+    repeat: Wrap, texels: Texels, columns: float, rows: float, u: float, v: float, height: float, to_u: float,
+    to_v: float, top: float, best: float,
+) -> float:  # fmt: skip
     """Ratio of the cone that a ray through the surface at (to_u, to_v) leaves room for; `best` if that is narrower."""
     depth = max(1.0 - top, _SHALLOWEST)
     step = (1.0 - depth) / STEPS
@@ -60,7 +66,10 @@ def _way_out(repeat, texels, columns, rows, u, v, height, to_u, to_v, top, best)
 
 
 @device
-def _in_block(repeat, relaxed, texels, columns, rows, i, j, first_row, first_column, shift_u, shift_v, best):
+def _in_block(
+    repeat: Wrap, relaxed: bool | None, texels: Texels, columns: float, rows: float, i: int, j: int, first_row: Whole,
+    first_column: Whole, shift_u: float, shift_v: float, best: float,
+) -> float:  # fmt: skip
     """The narrowest cone of texel (i, j) by the texels of a block, of the copy of the map that is shifted so."""
     u, v, height = (j + 0.5) / columns, (i + 0.5) / rows, texels[i * np.int64(columns) + j]
     for row in range(first_row, min(first_row + BLOCK, np.int64(rows))):
@@ -78,13 +87,16 @@ def _in_block(repeat, relaxed, texels, columns, rows, i, j, first_row, first_col
 
 
 @device
-def _beside(x, low, high):
+def _beside(x: float, low: float, high: float) -> float:
     """How far x is from the interval."""
     return max(max(low - x, x - high), 0.0)
 
 
 @device
-def _cone(repeat, relaxed, texels, columns, rows, maxima, block_rows, block_columns, i, j, near, best):
+def _cone(
+    repeat: Wrap, relaxed: bool | None, texels: Texels, columns: float, rows: float, maxima: Floats, block_rows: int,
+    block_columns: int, i: int, j: int, near: bool, best: float,
+) -> float:  # fmt: skip
     """The narrowest cone of texel (i, j) by all blocks, or with `near` by its own neighbours, which rule out most others."""
     u, v, height = (j + 0.5) / columns, (i + 0.5) / rows, texels[i * np.int64(columns) + j]
     copies = 0 if repeat is None or near else 1
@@ -112,7 +124,11 @@ def _cone(repeat, relaxed, texels, columns, rows, maxima, block_rows, block_colu
 
 
 @device
-def _cones_of_row(repeat, relaxed, texels, columns, rows, maxima, block_rows, block_columns, i, ratios):
+def _cones_of_row(
+    repeat: Wrap, relaxed: bool | None, texels: Texels, columns: float, rows: float, maxima: Floats, block_rows: int,
+    block_columns: int, i: int, ratios: Texels,
+) -> None:  # fmt: skip
+    """Ratios of the texels of row i."""
     for j in range(np.int64(columns)):
         best = 1.0
         for near in (True, False):
@@ -123,8 +139,11 @@ def _cones_of_row(repeat, relaxed, texels, columns, rows, maxima, block_rows, bl
 
 
 @kernel
-def cones(repeat, relaxed, texels, columns, rows, maxima, block_rows, block_columns, ratios):
-    """Ratios of all texels. relaxed: None or True; maxima: of the blocks, flat."""
+def cones(
+    repeat: Wrap, relaxed: bool | None, texels: Texels, columns: float, rows: float, maxima: Floats, block_rows: int,
+    block_columns: int, ratios: Texels,
+) -> None:  # fmt: skip
+    """Ratios of all texels. relaxed: None or True."""
     for i in prange(np.int64(rows)):
         _cones_of_row(repeat, relaxed, texels, columns, rows, maxima, block_rows, block_columns, i, ratios)
 

@@ -4,6 +4,9 @@ The texture's space is (u, v, d), each from 0 to 1, scaled alike. A voxel is sol
 holds the distance from its centre to that of the nearest solid one (SciPy's Euclidean distance transform), so that positions
 end within about a voxel of the surface. From C a fixed number of steps goes along the unit ray, each as far as the texture,
 fetched trilinearly, says; where the last one ends is the hit, whether or not the surface is there.
+
+Arrays: points (3, P), eye (4,), found and fetches (P,), one a pixel, as in `sought.Sought`; texels, of distances,
+(layers * rows * columns,).
 """
 
 from __future__ import annotations
@@ -11,7 +14,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Indices, Whole, Wrap
 from ibr_ref.displacement.below import keep, view_ray
+from ibr_ref.displacement.buffers import Hits
 from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import clamped, footprint, lerp
@@ -32,20 +37,25 @@ def distance_texture(heights: NDArray[np.float64], layers: int, repeat: bool) ->
 
 
 @device
-def _layer(texels, offset, i00, i10, i01, i11, fx, fy):
+def _layer(
+    texels: Floats, offset: int, i00: np.uint32, i10: np.uint32, i01: np.uint32, i11: np.uint32, fx: float, fy: float
+) -> float:
+    """The bilinear mix of four texels of the layer that begins at `offset`."""
     top = lerp(texels[offset + i00], texels[offset + i10], fx)
     bottom = lerp(texels[offset + i01], texels[offset + i11], fx)
     return lerp(top, bottom, fy)
 
 
 @device
-def fetch_distance(texels, columns, rows, layers, repeat, u, v, d):
+def fetch_distance(
+    texels: Floats, columns: float, rows: float, layers: int, repeat: Wrap, u: float, v: float, d: float
+) -> float:
     """Trilinear fetch; clamped in d."""
     i00, i10, i01, i11, fx, fy = footprint(u, v, columns, rows, repeat)
     z = clamped(d * layers - 0.5, 0.0, layers - 1.0)
     upper = np.floor(z)
     lower = min(upper + 1.0, layers - 1.0)
-    area = np.int64(columns) * np.int64(rows)
+    area: Whole = np.int64(columns) * np.int64(rows)
     return lerp(
         _layer(texels, np.int64(upper) * area, i00, i10, i01, i11, fx, fy),
         _layer(texels, np.int64(lower) * area, i00, i10, i01, i11, fx, fy),
@@ -54,7 +64,11 @@ def fetch_distance(texels, columns, rows, layers, repeat, u, v, d):
 
 
 @device
-def _trace(repeat, points, pixel, eye, texels, columns, rows, layers, steps, found, fetches):
+def _trace(
+    repeat: Wrap, points: Floats, pixel: int, eye: Floats, texels: Floats, columns: float, rows: float, layers: int,
+    steps: int, found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
+    """The hit of a pixel."""
     u, v, along_u, along_v, seen = view_ray(points, pixel, eye)
     if not seen:
         return
@@ -68,8 +82,11 @@ def _trace(repeat, points, pixel, eye, texels, columns, rows, layers, steps, fou
 
 
 @kernel
-def donnelly_search(repeat, points, eye, texels, columns, rows, layers, steps, found, fetches):
-    """Hits of all pixels. texels: the distance texture, flat; steps: N."""
+def donnelly_search(
+    repeat: Wrap, points: Floats, eye: Floats, texels: Floats, columns: float, rows: float, layers: int, steps: int,
+    found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
+    """Hits of all pixels. steps: N."""
     for pixel in prange(len(fetches)):
         _trace(repeat, points, pixel, eye, texels, columns, rows, layers, steps, found, fetches)
 

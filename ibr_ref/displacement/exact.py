@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import over_polygon
+from ibr_ref.array_types import Texels, Wrap
+from ibr_ref.displacement.buffers import Fragments, Hits, Rays, Settings, over_polygon
 from ibr_ref.jit import device
 from ibr_ref.pipeline.sampling import fetch
 
@@ -17,7 +18,7 @@ _MOST_CELLS = 1 << 24  # a repeated, nearly empty plane seen at a grazing angle 
 
 
 @device
-def upward_crossing(c, b, a, end):
+def upward_crossing(c: float, b: float, a: float, end: float) -> float:
     """Smallest s in [0, 1] at which a s^2 + b s + c, with c <= 0 and the value `end` at s = 1, becomes positive; else 2.
 
     Of the two roots only (-b + sqrt(D))/(2 a) has a positive slope; written so that nothing cancels.
@@ -34,7 +35,7 @@ def upward_crossing(c, b, a, end):
 
 
 @device
-def next_line(x, dx, cell):
+def next_line(x: float, dx: float, cell: float) -> float:
     """t at which x + t dx leaves the cell [cell, cell + 1]."""
     if dx > 0.0:
         return (cell + 1.0 - x) / dx
@@ -44,7 +45,7 @@ def next_line(x, dx, cell):
 
 
 @device
-def clip_unit(x, dx, t0, t1):
+def clip_unit(x: float, dx: float, t0: float, t1: float) -> tuple[float, float]:
     """Narrow [t0, t1] to where x + t dx lies in [0, 1]."""
     if dx == 0.0:
         return (t0, t1) if 0.0 <= x <= 1.0 else (1.0, 0.0)
@@ -53,13 +54,16 @@ def clip_unit(x, dx, t0, t1):
 
 
 @device
-def _above(repeat, texels, columns, rows, u, v, h):
+def _above(repeat: Wrap, texels: Texels, columns: float, rows: float, u: float, v: float, h: float) -> float:
     """H - h at a point: >= 0 inside the solid."""
     return fetch(texels, columns, rows, repeat, u, v) - h
 
 
 @device
-def intersect(repeat, texels, columns, rows, highest, u, v, h, du, dv, dh, t0, t1):
+def intersect(
+    repeat: Wrap, texels: Texels, columns: float, rows: float, highest: float, u: float, v: float, h: float, du: float,
+    dv: float, dh: float, t0: float, t1: float,
+) -> float:  # fmt: skip
     """Smallest t in [t0, t1] at which (u, v, h) + t (du, dv, dh) is inside the solid; 2 if there is none.
 
     `highest`: the largest height of all, above which nothing can be hit.
@@ -102,7 +106,10 @@ def intersect(repeat, texels, columns, rows, highest, u, v, h, du, dv, dh, t0, t
 
 
 @device
-def exact_search(repeat, fragments, rays, count, texels, columns, rows, highest, settings, hits):
+def exact_search(
+    repeat: Wrap, fragments: Fragments, rays: Rays, count: int, texels: Texels, columns: float, rows: float,
+    highest: float, settings: Settings, hits: Hits,
+) -> None:  # fmt: skip
     """The first intersections; a ray without one that ends on the polygon hits the polygon itself.
 
     linear_index and hit_index are those of the first lattice points at or behind the hit, so that figures compare;

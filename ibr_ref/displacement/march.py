@@ -4,14 +4,17 @@ All tests are on the lattice t = k/K, K = N 2^M. Fragments run in waves: each st
 an inner loop, with masks instead of branches, as a GPU does; LLVM turns those loops into SIMD (`pipeline.waves` says when).
 Where to sample, the fetch (`pipeline.fetches`), and what follows from it are loops of their own: one loop for all takes
 half as long again.
+
+Arrays: linear_index, hit_index, height_before (F,), as in `Hits`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import load_rays, over_polygon
-from ibr_ref.displacement.maxima import cells_in, level_for, within_reach
+from ibr_ref.array_types import Floats, Indices, Lanes, Texels, Wrap
+from ibr_ref.displacement.buffers import Fragments, Hits, Rays, Settings, load_rays, over_polygon
+from ibr_ref.displacement.maxima import Maxima, cells_in, level_for, within_reach
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.fetches import fetch_wave
 from ibr_ref.pipeline.sampling import lerp
@@ -33,9 +36,12 @@ _BORDER_SLACK = 1e-6
 STRETCH = 16
 """Steps whose clearance is computed at once: steps take the place of lanes there."""
 
+Bounds = tuple[float, float, float, float]
+"""Of u, v or h over a wave's lanes: the smallest at t = 0, the smallest at t = 1, the largest at t = 0 and at t = 1."""
+
 
 @device
-def _bounds(values, steps, stop):
+def _bounds(values: Lanes, steps: Lanes, stop: Lanes) -> Bounds:
     """Smallest and largest value of a wave's open lanes at t = 0, and the same at t = 1: low0, low1, high0, high1."""
     low0, low1, high0, high1 = lanes(), lanes(), lanes(), lanes()
     for lane in range(LANES):
@@ -48,7 +54,9 @@ def _bounds(values, steps, stop):
 
 
 @device
-def wave_bounds(u, v, h, du, dv, dh, stop, volume):
+def wave_bounds(
+    u: Lanes, v: Lanes, h: Lanes, du: Lanes, dv: Lanes, dh: Lanes, stop: Lanes, volume: bool
+) -> tuple[Bounds, Bounds, Bounds]:
     """Bounds of u, v and h over the lanes that have not stopped, stop < 0 (paper: h is 1 - t in every lane)."""
     if volume:
         low0, low1, high0, high1 = _bounds(h, dh, stop)
@@ -61,7 +69,9 @@ def wave_bounds(u, v, h, du, dv, dh, stop, volume):
 
 
 @device
-def clearances(repeat, maxima, settings, bounds, step, clear):
+def clearances(
+    repeat: Wrap, maxima: Maxima, settings: Settings, bounds: tuple[Bounds, Bounds, Bounds], step: int, clear: Lanes
+) -> None:
     """How far the wave's rays stay above all heights at each of STRETCH steps, at least; infinite outside the domain.
 
     At each t the lanes' values lie between the mixes of their bounds at t = 0 and t = 1. A NaN or infinite bound proves
@@ -100,7 +110,7 @@ def clearances(repeat, maxima, settings, bounds, step, clear):
 
 
 @device
-def _first_step(maxima, settings):
+def _first_step(maxima: Maxima, settings: Settings) -> int:
     """The first step of the paper's interval that is not above all heights."""
     total = np.float64(settings.linear_steps << settings.binary_steps)
     stride = np.float64(1 << settings.binary_steps)
@@ -111,7 +121,10 @@ def _first_step(maxima, settings):
 
 
 @device
-def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, linear_index):
+def linear_search(
+    repeat: Wrap, rays: Rays, count: int, texels: Texels, columns: float, rows: float, maxima: Maxima,
+    settings: Settings, linear_index: Indices,
+) -> None:  # fmt: skip
     """Step at which each ray is first found inside the solid, -1 if never.
 
     Stretches that the maxima prove empty for a whole wave are leapt over.
@@ -155,7 +168,10 @@ def linear_search(repeat, rays, count, texels, columns, rows, maxima, settings, 
 
 
 @device
-def binary_search(repeat, rays, count, texels, columns, rows, settings, linear_index, hit_index):
+def binary_search(
+    repeat: Wrap, rays: Rays, count: int, texels: Texels, columns: float, rows: float, settings: Settings,
+    linear_index: Indices, hit_index: Indices,
+) -> None:  # fmt: skip
     """Lattice index of each hit: M halvings of the last linear step; -1 where the linear search found nothing.
 
     Indices are floats here, which hold them exactly: a wave of one type needs no conversions.
@@ -192,7 +208,10 @@ def binary_search(repeat, rays, count, texels, columns, rows, settings, linear_i
 
 
 @device
-def heights_before(repeat, rays, count, texels, columns, rows, settings, linear_index, height_before):
+def heights_before(
+    repeat: Wrap, rays: Rays, count: int, texels: Texels, columns: float, rows: float, settings: Settings,
+    linear_index: Indices, height_before: Floats,
+) -> None:  # fmt: skip
     """a (section 4.2): the height map one linear step before the stop; 0 where that sample is empty."""
     stride = np.float64(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
@@ -219,7 +238,7 @@ def heights_before(repeat, rays, count, texels, columns, rows, settings, linear_
 
 
 @device
-def place_hits(fragments, rays, count, settings, hits):
+def place_hits(fragments: Fragments, rays: Rays, count: int, settings: Settings, hits: Hits) -> None:
     """(u, v, h) of each hit, from its lattice index.
 
     No stop, or a hit at k = K: a fragment over the polygon hits the polygon itself, any other is discarded.
@@ -255,7 +274,7 @@ def place_hits(fragments, rays, count, settings, hits):
 
 
 @device
-def mark_steep(count, settings, hits):
+def mark_steep(count: int, settings: Settings, hits: Hits) -> None:
     """Steep: the hit is higher than the map was one linear step before, by more than delta (section 4.2)."""
     for i in range(count):
         rise = hits.h[i] - hits.height_before[i]

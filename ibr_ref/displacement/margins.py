@@ -2,27 +2,31 @@
 
 Computed after the search, and only where all stages are kept: the search itself stays free of them. Steps whose
 comparison cannot be the closest, because the maxima keep the wave's rays farther away, are left out.
+
+Arrays: linear_index, hit_index, margin, border (F,), as in `Hits`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import load_rays
+from ibr_ref.array_types import Floats, Indices, Lanes, Texels, Whole, Wrap
+from ibr_ref.displacement.buffers import Rays, Settings, load_rays
 from ibr_ref.displacement.march import STRETCH, clearances, wave_bounds
+from ibr_ref.displacement.maxima import Maxima
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.fetches import fetch_wave
 from ibr_ref.pipeline.waves import lanes, largest, load, load_indices, store
 
 
 @device
-def _distance_to_border(u, v):
+def _distance_to_border(u: float, v: float) -> float:
     """Distance of (u, v) from the border of the domain, on either side: |min(u, 1 - u, v, 1 - v)|."""
     return abs(min(min(u, 1.0 - u), min(v, 1.0 - v)))
 
 
 @device
-def _last_steps(rays, linear_index, first, steps, last):
+def _last_steps(rays: Rays, linear_index: Indices, first: int, steps: int, last: Lanes) -> Whole:
     """The last step that each lane of a wave was tested at, -1 where the ray does not go down; the largest of them."""
     stop, h = lanes(), lanes()
     load_indices(linear_index, first, stop)
@@ -35,7 +39,7 @@ def _last_steps(rays, linear_index, first, steps, last):
 
 
 @device
-def _farthest(closest, compared):
+def _farthest(closest: Lanes, compared: Lanes) -> float:
     """The largest margin of a wave so far: what stays farther away than this changes none."""
     near, last = lanes(), lanes()
     load(closest, 0, near)
@@ -46,7 +50,10 @@ def _farthest(closest, compared):
 
 
 @device
-def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings, linear_index, margin):
+def linear_margins(
+    repeat: Wrap, rays: Rays, count: int, texels: Texels, columns: float, rows: float, maxima: Maxima,
+    settings: Settings, linear_index: Indices, margin: Floats,
+) -> None:  # fmt: skip
     """Smallest |h - H| over the comparisons of the linear search, without those at h = 0 or h = 1."""
     steps = settings.linear_steps
     total = np.float64(steps << settings.binary_steps)
@@ -88,7 +95,10 @@ def linear_margins(repeat, rays, count, texels, columns, rows, maxima, settings,
 
 
 @device
-def binary_margins(repeat, rays, count, texels, columns, rows, settings, linear_index, hit_index, margin, border):
+def binary_margins(
+    repeat: Wrap, rays: Rays, count: int, texels: Texels, columns: float, rows: float, settings: Settings,
+    linear_index: Indices, hit_index: Indices, margin: Floats, border: Floats,
+) -> None:  # fmt: skip
     """The same over the comparisons of the binary search, replayed from its result; `border` as in `linear_border`."""
     stride = np.float64(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
@@ -134,7 +144,7 @@ def binary_margins(repeat, rays, count, texels, columns, rows, settings, linear_
 
 
 @device
-def linear_border(rays, count, settings, linear_index, border):
+def linear_border(rays: Rays, count: int, settings: Settings, linear_index: Indices, border: Floats) -> None:
     """Smallest distance in (u, v) of a sample of the linear search from the border of the domain."""
     steps = settings.linear_steps
     total = np.float64(steps << settings.binary_steps)

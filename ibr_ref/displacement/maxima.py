@@ -3,6 +3,8 @@
 Level 0 holds, for every cell of 8 x 8 texels, the largest height that a bilinear fetch with its texture coordinate in
 the cell can return; each further level halves the resolution. Nothing that the search returns depends on it: a step is
 only skipped where no fetch could reach the ray.
+
+Arrays: values, offsets, columns and rows as in `Maxima`.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Ints, Texels
 from ibr_ref.jit import device, kernel, prange, routine
 from ibr_ref.pipeline.sampling import clamped
 
@@ -39,8 +42,16 @@ class Maxima(NamedTuple):
     """The largest height of all."""
 
 
+Grid = tuple[float, float, float, float, float, float, float]
+"""Of a level: its offset in the values, cells in a row, cells in a unit of u and of v, the largest column and row of a
+cell, and the slack in cells."""
+Cells = tuple[np.int32, np.int32, np.int32, np.int32]
+"""Indices of cells in the values."""
+
+
 @kernel
-def _cells(texels, rows, columns, values, cell_rows, cell_columns):
+def _cells(texels: Texels, rows: int, columns: int, values: Floats, cell_rows: int, cell_columns: int) -> None:
+    """Level 0, cell_rows x cell_columns, of a height map of rows x columns texels."""
     for i in prange(cell_rows):
         for j in range(cell_columns):
             largest = 0.0
@@ -51,7 +62,10 @@ def _cells(texels, rows, columns, values, cell_rows, cell_columns):
 
 
 @device
-def _halve(values, source, source_rows, source_columns, target, rows, columns):
+def _halve(
+    values: Floats, source: int, source_rows: int, source_columns: int, target: int, rows: int, columns: int
+) -> None:
+    """A level, from `target` on, of the finer one that begins at `source`."""
     for i in range(rows):
         for j in range(columns):
             largest = 0.0
@@ -62,7 +76,8 @@ def _halve(values, source, source_rows, source_columns, target, rows, columns):
 
 
 @routine
-def _coarser_levels(values, offsets, rows, columns):
+def _coarser_levels(values: Floats, offsets: Ints, rows: Ints, columns: Ints) -> None:
+    """All levels but the first."""
     for level in range(1, len(offsets)):
         fine = level - 1
         _halve(values, offsets[fine], rows[fine], columns[fine], offsets[level], rows[level], columns[level])
@@ -90,7 +105,7 @@ def build(texels: NDArray[np.float64], rows: int, columns: int) -> Maxima:
 
 
 @device
-def level_for(maxima, width, height):
+def level_for(maxima: Maxima, width: float, height: float) -> Grid:
     """The finest level at which a range of (u, v) so wide and high falls into two cells each way.
 
     As a grid: offset in the values, cells in a row, cells in a unit of u and v, the largest indices of cells.
@@ -106,7 +121,7 @@ def level_for(maxima, width, height):
 
 
 @device
-def cells_in(grid, u_low, u_high, v_low, v_high):
+def cells_in(grid: Grid, u_low: float, u_high: float, v_low: float, v_high: float) -> Cells:
     """Indices of the four cells that u in [u_low, u_high] and v in [v_low, v_high] (clamped) reach at most."""
     offset, columns, across, along, last_column, last_row, slack = grid
     left = clamped(np.floor(u_low * across - slack), 0.0, last_column)
@@ -117,13 +132,13 @@ def cells_in(grid, u_low, u_high, v_low, v_high):
 
 
 @device
-def within_reach(u_low, u_high, v_low, v_high):
+def within_reach(u_low: float, u_high: float, v_low: float, v_high: float) -> bool:
     """Whether coordinates round by so little that `cells_in` holds."""
     return (abs(u_low) < _FAR) & (abs(u_high) < _FAR) & (abs(v_low) < _FAR) & (abs(v_high) < _FAR)
 
 
 @device
-def highest(maxima, u_low, u_high, v_low, v_high):
+def highest(maxima: Maxima, u_low: float, u_high: float, v_low: float, v_high: float) -> float:
     """An upper bound of every fetch with u in [u_low, u_high] and v in [v_low, v_high] (clamped)."""
     grid = level_for(maxima, u_high - u_low, v_high - v_low)
     first, second, third, fourth = cells_in(grid, u_low, u_high, v_low, v_high)

@@ -3,6 +3,8 @@
 The first of n depth steps, from d = 0, with d >= D(q(d)); n = round(2N (1 - w_z) + N w_z), w_z the cosine between the view
 ray and the normal. Heights come from level `lod_bias` of the mip chain (trilinear): blurred as much as the steps would miss.
 A GPU adds the bias to the level of the pixel's own footprint, which counts as 0 here, as in all other systems.
+
+Arrays: points (3, P), found and fetches (P,), one a pixel, as in `sought.Sought`.
 """
 
 from __future__ import annotations
@@ -11,8 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Floats, Indices, Wrap
 from ibr_ref.displacement.below import border, distance_to_eye, in_domain, keep, view_ray
+from ibr_ref.displacement.buffers import Hits, Uniforms
 from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch, lerp
@@ -62,7 +65,11 @@ def levels_at(chain: list[Floats], level: float) -> tuple[Level, Level, float]:
 
 
 @device
-def _march(repeat, points, pixel, constants, fine, coarse, share, steps, found, fetches):
+def _march(
+    repeat: Wrap, points: Floats, pixel: int, constants: Uniforms, fine: Level, coarse: Level, share: float, steps: int,
+    found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
+    """The hit of a pixel; share: of the coarse level."""
     u, v, along_u, along_v, seen = view_ray(points, pixel, constants.eye)
     if not seen:
         return
@@ -93,7 +100,10 @@ def _march(repeat, points, pixel, constants, fine, coarse, share, steps, found, 
 
 
 @kernel
-def mcguire_search(repeat, points, constants, fine, coarse, share, steps, found, fetches):
+def mcguire_search(
+    repeat: Wrap, points: Floats, constants: Uniforms, fine: Level, coarse: Level, share: float, steps: int,
+    found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
     """Hits of all pixels. steps: N."""
     for pixel in prange(len(fetches)):
         _march(repeat, points, pixel, constants, fine, coarse, share, steps, found, fetches)

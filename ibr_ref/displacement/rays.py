@@ -1,16 +1,22 @@
-"""The stretch of each view ray that is searched, in patch space (section 3.1; section 3.2.2 for the side faces)."""
+"""The stretch of each view ray that is searched, in patch space (section 3.1; section 3.2.2 for the side faces).
+
+The eye is (4,), homogeneous, in patch space.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.displacement.buffers import padded
+from ibr_ref.array_types import Floats
+from ibr_ref.displacement.buffers import Fragments, Rays, padded
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.waves import lanes, load, store
 
 
 @device
-def _paper_ray(u, v, h, eye_u, eye_v, eye_h, eye_w):
+def _paper_ray(
+    u: float, v: float, h: float, eye_u: float, eye_v: float, eye_h: float, eye_w: float
+) -> tuple[float, float, float, float, float, float]:
     """From B on the top of the volume (h = 1) to A on the plane of the polygon (h = 0), for the face's point C."""
     to_u = eye_u - eye_w * u
     to_v = eye_v - eye_w * v
@@ -26,7 +32,7 @@ def _paper_ray(u, v, h, eye_u, eye_v, eye_h, eye_w):
 
 
 @device
-def _exit(x, towards, best, axis, best_axis):
+def _exit(x: float, towards: float, best: float, axis: int, best_axis: int) -> tuple[float, int]:
     """Nearer of `best` and where a ray from x leaves [0, 1] on this axis; a tie stays with the earlier axis."""
     if towards > 0.0:
         t = (1.0 - x) / towards
@@ -38,7 +44,9 @@ def _exit(x, towards, best, axis, best_axis):
 
 
 @device
-def _volume_ray(u, v, h, eye_u, eye_v, eye_h, eye_w):
+def _volume_ray(
+    u: float, v: float, h: float, eye_u: float, eye_v: float, eye_h: float, eye_w: float
+) -> tuple[float, float, float, float, float, float]:
     """From where the view ray enters the unit cube, or the eye if that is inside, to the face's point C."""
     inside = eye_w == 1.0 and 0.0 <= eye_u <= 1.0 and 0.0 <= eye_v <= 1.0 and 0.0 <= eye_h <= 1.0
     if inside:
@@ -64,7 +72,7 @@ def _volume_ray(u, v, h, eye_u, eye_v, eye_h, eye_w):
 
 
 @device
-def paper_rays(fragments, count, eye, rays):
+def paper_rays(fragments: Fragments, count: int, eye: Floats, rays: Rays) -> None:
     """Rays of interval="paper"."""
     eye_u, eye_v, eye_h, eye_w = eye[0], eye[1], eye[2], eye[3]
     u, v, h, du, dv, dh = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
@@ -85,7 +93,7 @@ def paper_rays(fragments, count, eye, rays):
 
 
 @device
-def volume_rays(fragments, count, eye, rays):
+def volume_rays(fragments: Fragments, count: int, eye: Floats, rays: Rays) -> None:
     """Rays of interval="volume"."""
     for i in range(count):
         rays.u[i], rays.v[i], rays.h[i], rays.du[i], rays.dv[i], rays.dh[i] = _volume_ray(

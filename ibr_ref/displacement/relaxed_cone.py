@@ -3,13 +3,17 @@
 N steps as in cone step mapping, with the relaxed ratios of `cones`: they end inside, but cannot have come out again. Then M
 halvings of the whole stretch from the polygon to there, as in the authors' shader: outside, d < D, goes on, inside back; the
 hit is where the last one ends, within 2^-M of that stretch.
+
+Arrays: points (3, P), eye (4,), found and fetches (P,), one a pixel, as in `sought.Sought`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats, Indices, Lanes, Texels, Wrap
 from ibr_ref.displacement.below import border, keep, sampled, view_rays
+from ibr_ref.displacement.buffers import Hits
 from ibr_ref.displacement.cone import cone_steps
 from ibr_ref.displacement.cones import cone_ratios
 from ibr_ref.displacement.sought import Sought
@@ -19,7 +23,10 @@ from ibr_ref.pipeline.waves import lanes
 
 
 @device
-def _halve(repeat, texels, columns, rows, u, v, along_u, along_v, halvings, depth, margin, nearest):
+def _halve(
+    repeat: Wrap, texels: Texels, columns: float, rows: float, u: Lanes, v: Lanes, along_u: Lanes, along_v: Lanes,
+    halvings: int, depth: Lanes, margin: Lanes, nearest: Lanes,
+) -> None:  # fmt: skip
     """Halvings of the stretch from the polygon to each depth of a wave; the margins start at infinity."""
     bounded = repeat is None
     stretch, p_u, p_v, height = lanes(), lanes(), lanes(), lanes()
@@ -41,7 +48,11 @@ def _halve(repeat, texels, columns, rows, u, v, along_u, along_v, halvings, dept
 
 
 @device
-def _trace(repeat, points, first, eye, texels, ratios, columns, rows, steps, halvings, found, fetches):
+def _trace(
+    repeat: Wrap, points: Floats, first: int, eye: Floats, texels: Texels, ratios: Texels, columns: float, rows: float,
+    steps: int, halvings: int, found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
+    """Hits of a wave of pixels."""
     u, v, along_u, along_v, depth, margin, nearest = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
     count, seen = view_rays(points, first, eye, u, v, along_u, along_v)
     if not seen:
@@ -58,8 +69,9 @@ def _trace(repeat, points, first, eye, texels, ratios, columns, rows, steps, hal
 
 @kernel
 def relaxed_cone_search(
-    repeat, points, eye, texels, ratios, columns, rows, steps, halvings, found, fetches
-):  # fmt: skip
+    repeat: Wrap, points: Floats, eye: Floats, texels: Texels, ratios: Texels, columns: float, rows: float, steps: int,
+    halvings: int, found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
     """Hits of all pixels. steps, halvings: N and M."""
     for wave in prange((len(fetches) + LANES - 1) // LANES):
         _trace(repeat, points, wave * LANES, eye, texels, ratios, columns, rows, steps, halvings, found, fetches)

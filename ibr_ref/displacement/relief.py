@@ -2,20 +2,27 @@
 
 Depth d = -h below the polygon, D = 1 - H: N linear steps down from d = 0, then M binary ones, on the base face alone.
 The comparison is d >= D, as in Policarpo's own shader. Everything that is not raised to H = 1 sinks below the polygon.
+
+The eye is (4,), homogeneous, in patch space.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats, Lanes, Texels, Wrap
 from ibr_ref.displacement.below import view_rays
+from ibr_ref.displacement.buffers import Fragments, Hits, Settings
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.fetches import fetch_wave
 from ibr_ref.pipeline.waves import lanes, smallest, store
 
 
 @device
-def _compared(sample, p_u, p_v, depth, bounded, active, below, margin, nearest):
+def _compared(
+    sample: Lanes, p_u: Lanes, p_v: Lanes, depth: Lanes, bounded: bool, active: Lanes, below: Lanes, margin: Lanes,
+    nearest: Lanes,
+) -> None:  # fmt: skip
     """Of a wave's samples at their depths: whether they are at or below the surface, 1 or 0, and their margins.
 
     The same as `below.sampled` and `below.border` lane by lane, without branches.
@@ -37,7 +44,10 @@ def _compared(sample, p_u, p_v, depth, bounded, active, below, margin, nearest):
 
 
 @device
-def _linear_search(repeat, texels, columns, rows, u, v, along_u, along_v, settings, stop, before, margin, nearest):
+def _linear_search(
+    repeat: Wrap, texels: Texels, columns: float, rows: float, u: Lanes, v: Lanes, along_u: Lanes, along_v: Lanes,
+    settings: Settings, stop: Lanes, before: Lanes, margin: Lanes, nearest: Lanes,
+) -> None:  # fmt: skip
     """Step at which each lane that searches (stop < 0) is at or below the surface, and the height one step before."""
     stride = np.float64(1 << settings.binary_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
@@ -62,7 +72,10 @@ def _linear_search(repeat, texels, columns, rows, u, v, along_u, along_v, settin
 
 
 @device
-def _binary_search(repeat, texels, columns, rows, u, v, along_u, along_v, settings, stop, inside, margin, nearest):
+def _binary_search(
+    repeat: Wrap, texels: Texels, columns: float, rows: float, u: Lanes, v: Lanes, along_u: Lanes, along_v: Lanes,
+    settings: Settings, stop: Lanes, inside: Lanes, margin: Lanes, nearest: Lanes,
+) -> None:  # fmt: skip
     """Lattice index of each lane that has stopped below the polygon."""
     stride, steps = np.float64(1 << settings.binary_steps), np.float64(settings.linear_steps)
     total = np.float64(settings.linear_steps << settings.binary_steps)
@@ -85,7 +98,10 @@ def _binary_search(repeat, texels, columns, rows, u, v, along_u, along_v, settin
 
 
 @device
-def relief_search(repeat, fragments, count, eye, texels, columns, rows, settings, hits):
+def relief_search(
+    repeat: Wrap, fragments: Fragments, count: int, eye: Floats, texels: Texels, columns: float, rows: float,
+    settings: Settings, hits: Hits,
+) -> None:  # fmt: skip
     """Hits (u, v, -d) of all fragments; a ray that leaves the map before it meets the surface is discarded."""
     total, beyond = np.float64(settings.linear_steps << settings.binary_steps), settings.linear_steps + 1.0
     u, v, along_u, along_v = lanes(), lanes(), lanes(), lanes()
@@ -108,7 +124,7 @@ def relief_search(repeat, fragments, count, eye, texels, columns, rows, settings
 
 
 @device
-def texture_search(fragments, count, settings, hits):
+def texture_search(fragments: Fragments, count: int, settings: Settings, hits: Hits) -> None:
     """Texture mapping: every fragment hits the polygon where it is."""
     for i in range(count):
         hits.hit_index[i] = settings.linear_steps << settings.binary_steps

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ibr_ref.array_types import Bools, Floats, Indices
+from ibr_ref.array_types import Bools, Floats, Indices, Ints
 from ibr_ref.contract import IMAGE, StageArray
+from ibr_ref.displacement.buffers import Fragments, Hits, Settings, Shades, Uniforms
 from ibr_ref.displacement.contract import FRAGMENT_FIELDS, STAGES
 from ibr_ref.jit import LANES, device, kernel, prange
 from ibr_ref.pipeline.memory import Layout, arrays
@@ -61,20 +63,22 @@ def target_for(pixels: int, keep: bool) -> Target:
 
 
 @device
-def _fill(array, first, last, value):
+def _fill(array: Floats | Indices | Bools, first: int, last: int, value: float) -> None:
+    """array (P,)."""
     for i in range(first, last):
         array[i] = value
 
 
 @device
-def _fill_triples(array, first, last, x, y, z):
+def _fill_triples(array: Floats, first: int, last: int, x: float, y: float, z: float) -> None:
+    """array (P, 3)."""
     for i in range(first, last):
         array[i, 0], array[i, 1], array[i, 2] = x, y, z
 
 
 @device
-def clear(target, background, first, last):
-    """Nothing at the pixels [first, last): the background at depth 1; -1, NaN and False in the stages."""
+def clear(target: Target, background: Floats, first: int, last: int) -> None:
+    """Nothing at the pixels [first, last): the background at depth 1; -1, NaN and False in the stages. background (3,)."""
     _fill(target.depth, first, last, 1.0)
     _fill_triples(target.color, first, last, background[0], background[1], background[2])
     if len(target.face) == 0:
@@ -99,7 +103,7 @@ def clear(target, background, first, last):
 
 
 @device
-def project_hits(fragments, count, constants, settings, hits):
+def project_hits(fragments: Fragments, count: int, constants: Uniforms, settings: Settings, hits: Hits) -> None:
     """Window depth of each hit; a hit in front of the near plane is discarded, as if nothing had been found."""
     c, a, view, clip = constants.corner, constants.axes, constants.view_from_world, constants.clip_from_view
     world = (
@@ -160,9 +164,12 @@ def project_hits(fragments, count, constants, settings, hits):
 SHOWN, NOTED, HIDDEN = 2, 1, 0
 """A fragment that passes the depth test; one that does not, but is the first on its pixel; any other."""
 
+Verdicts = NDArray[np.int8]
+"""(F,): which of these each fragment of a band is."""
+
 
 @device
-def depth_test(fragments, hits, count, target, verdicts):
+def depth_test(fragments: Fragments, hits: Hits, count: int, target: Target, verdicts: Verdicts) -> int:
     """Depth test LESS in submission order; how many fragments passed. Writes the depth."""
     shown = 0
     for i in range(count):
@@ -176,7 +183,7 @@ def depth_test(fragments, hits, count, target, verdicts):
 
 
 @device
-def noted_depth_test(fragments, hits, count, target, verdicts):
+def noted_depth_test(fragments: Fragments, hits: Hits, count: int, target: Target, verdicts: Verdicts) -> int:
     """The same, and what the stages need: first fragments on their pixels, and the depth behind the one that is shown."""
     shown = 0
     for i in range(count):
@@ -198,14 +205,21 @@ def noted_depth_test(fragments, hits, count, target, verdicts):
 
 
 @device
-def _copy(verdicts, pixels, count, source, destination):
+def _copy(
+    verdicts: Verdicts, pixels: Ints, count: int, source: Floats | Indices | Bools,
+    destination: Floats | Indices | Bools,
+) -> None:  # fmt: skip
+    """From source (F,) to destination (P,), where a fragment's pixel (F,) notes it."""
     for i in range(count):
         if verdicts[i] != HIDDEN:
             destination[pixels[i]] = source[i]
 
 
 @device
-def _copy_triple(verdicts, pixels, count, x, y, z, destination):
+def _copy_triple(
+    verdicts: Verdicts, pixels: Ints, count: int, x: Floats, y: Floats, z: Floats, destination: Floats
+) -> None:
+    """From x, y, z (F,) to destination (P, 3)."""
     for i in range(count):
         if verdicts[i] != HIDDEN:
             pixel = pixels[i]
@@ -213,7 +227,7 @@ def _copy_triple(verdicts, pixels, count, x, y, z, destination):
 
 
 @device
-def write_color(fragments, shades, count, verdicts, target):
+def write_color(fragments: Fragments, shades: Shades, count: int, verdicts: Verdicts, target: Target) -> None:
     """Colour of the fragments that passed, in submission order."""
     color = shades.color
     for i in range(count):
@@ -224,7 +238,9 @@ def write_color(fragments, shades, count, verdicts, target):
 
 
 @device
-def write_stages(fragments, hits, count, patch_id, verdicts, target):
+def write_stages(
+    fragments: Fragments, hits: Hits, count: int, patch_id: int, verdicts: Verdicts, target: Target
+) -> None:
     """raster.* and march.* of the fragments that their pixels note."""
     pixels = fragments.pixel
     for i in range(count):
@@ -242,7 +258,9 @@ def write_stages(fragments, hits, count, patch_id, verdicts, target):
 
 
 @device
-def write_shades(fragments, hits, shades, count, verdicts, target):
+def write_shades(
+    fragments: Fragments, hits: Hits, shades: Shades, count: int, verdicts: Verdicts, target: Target
+) -> None:
     """shade.* of the fragments that their pixels note, if they were kept; NaN and False otherwise."""
     pixels = fragments.pixel
     for i in range(count):
@@ -260,10 +278,10 @@ def write_shades(fragments, hits, shades, count, verdicts, target):
 
 
 @kernel
-def resolve_margins(target, margin):
+def resolve_margins(target: Target, margin: Floats) -> None:
     """Distance in depth from what is shown to the nearest other kept fragment; NaN where no face covers the pixel.
 
-    `margin` may be the array `second` of the target itself.
+    `margin` (P,) may be the array `second` of the target itself.
     """
     chunk = 4096
     pixels = len(margin)

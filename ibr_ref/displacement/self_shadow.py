@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats, Texels, Wrap
+from ibr_ref.displacement.buffers import Hits, Settings, Shades
 from ibr_ref.jit import device
 from ibr_ref.pipeline.sampling import fetch
 
 
 @device
-def _nearer(x, low, high, towards, best):
+def _nearer(x: float, low: float, high: float, towards: float, best: float) -> float:
     """The smaller of `best` and the fraction of `towards` at which x leaves [low, high]."""
     if towards > 0.0:
         return min(best, (high - x) / towards)
@@ -19,7 +21,10 @@ def _nearer(x, low, high, towards, best):
 
 
 @device
-def _stretch(repeat, u, v, h, floor, towards_u, towards_v, towards_h, w):
+def _stretch(
+    repeat: Wrap, u: float, v: float, h: float, floor: float, towards_u: float, towards_v: float, towards_h: float,
+    w: float,
+) -> float:  # fmt: skip
     """Fraction of the way towards the light that lies inside the volume (repeat: below its top); 0 without a way."""
     if towards_u == 0.0 and towards_v == 0.0 and towards_h == 0.0:
         return 0.0
@@ -31,8 +36,11 @@ def _stretch(repeat, u, v, h, floor, towards_u, towards_v, towards_h, w):
 
 
 @device
-def self_shadow(repeat, keep, hits, count, texels, columns, rows, light, settings, shades):
-    """`lit` and its margin for each kept hit."""
+def self_shadow(
+    repeat: Wrap, keep: bool | None, hits: Hits, count: int, texels: Texels, columns: float, rows: float, light: Floats,
+    settings: Settings, shades: Shades,
+) -> None:  # fmt: skip
+    """`lit` and its margin for each kept hit; light (4,) in patch space. keep: None stops at the first sample in shadow."""
     steps, floor = settings.shadow_steps, settings.floor
     for i in range(count):
         if hits.hit_index[i] < 0:

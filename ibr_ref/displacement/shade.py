@@ -1,12 +1,15 @@
 """Shading of the hits: albedo and normal from the maps, Phong lighting (sections 3.1 and 4.2).
 
-Each function fills one array of the stage for all fragments of a band, in waves.
+Each function fills one array of the stage for all fragments of a band, in waves: slope (2, F), normal and albedo
+(3, F), as in `Shades`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats, Texels, Vector3, Wrap
+from ibr_ref.displacement.buffers import Hits, Shades, Uniforms
 from ibr_ref.jit import LANES, device
 from ibr_ref.pipeline.fetches import fetch_color_wave, fetch_cross_wave
 from ibr_ref.pipeline.lighting import homogeneous, light_wave, lit_channel, unit
@@ -17,7 +20,7 @@ _LEAST_DIFFERENCE = 2.0**-16  # a smaller difference of heights is rounding, not
 
 
 @device
-def nothing_kept(hits, first):
+def nothing_kept(hits: Hits, first: int) -> bool:
     """Whether a wave holds discarded fragments alone: it is not shaded."""
     index = lanes()
     load_indices(hits.hit_index, first, index)
@@ -25,14 +28,14 @@ def nothing_kept(hits, first):
 
 
 @device
-def _slope(ahead, behind, size):
+def _slope(ahead: float, behind: float, size: float) -> float:
     """Central difference of heights, per unit of the texture coordinate."""
     difference = ahead - behind
     return (0.0 if abs(difference) < _LEAST_DIFFERENCE else difference) * size / 2.0
 
 
 @device
-def slopes(repeat, hits, count, texels, columns, rows, slope):
+def slopes(repeat: Wrap, hits: Hits, count: int, texels: Texels, columns: float, rows: float, slope: Floats) -> None:
     """(g_u, g_v), the gradient of the height map at the hits, from one texel to either side."""
     u, v, left, right, above, below = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
     g_u, g_v = lanes(), lanes()
@@ -49,7 +52,7 @@ def slopes(repeat, hits, count, texels, columns, rows, slope):
 
 
 @device
-def height_normals(hits, count, constants, slope, normal):
+def height_normals(hits: Hits, count: int, constants: Uniforms, slope: Floats, normal: Floats) -> None:
     """normalize(n - s (g_u U* + g_v V*)): the surface's own normal, where there is no normal map."""
     scale, across, n = constants.scale, constants.rows, constants.frame[2]
     ux, uy, uz = across[0, 0], across[0, 1], across[0, 2]
@@ -73,7 +76,10 @@ def height_normals(hits, count, constants, slope, normal):
 
 
 @device
-def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal):
+def mapped_normals(
+    repeat: Wrap, hits: Hits, count: int, texels: Texels, columns: float, rows: float, constants: Uniforms,
+    normal: Floats,
+) -> None:  # fmt: skip
     """Normals from the normal map: 2 c - 1 in the frame (U/|U|, n x U/|U|, n), normalized; a zero one is n."""
     frame = constants.frame
     tx, ty, tz = frame[0, 0], frame[0, 1], frame[0, 2]
@@ -99,7 +105,7 @@ def mapped_normals(repeat, hits, count, texels, columns, rows, constants, normal
 
 
 @device
-def albedos(repeat, hits, count, texels, columns, rows, albedo):
+def albedos(repeat: Wrap, hits: Hits, count: int, texels: Texels, columns: float, rows: float, albedo: Floats) -> None:
     """The colour map at the hits."""
     u, v, red, green, blue = lanes(), lanes(), lanes(), lanes(), lanes()
     for first in range(0, count, LANES):
@@ -114,7 +120,7 @@ def albedos(repeat, hits, count, texels, columns, rows, albedo):
 
 
 @device
-def _horizontal(constants, along_u, along_v):
+def _horizontal(constants: Uniforms, along_u: float, along_v: float) -> Vector3:
     """along_u U + along_v V, normalized; n where that is zero (the eye straight above)."""
     axes, n = constants.axes, constants.frame[2]
     x, y, z = unit(
@@ -126,7 +132,7 @@ def _horizontal(constants, along_u, along_v):
 
 
 @device
-def _wall(constants, g_u, g_v, u, v):
+def _wall(constants: Uniforms, g_u: float, g_v: float, u: float, v: float) -> tuple[Vector3, bool, float]:
     """Normal of the wall at a steep hit, whether it faces u (else v), and the margin of that decision."""
     length_u, length_v = constants.lengths[0], constants.lengths[1]
     if g_u == 0.0 and g_v == 0.0:  # no slope to go by: the wall faces the eye
@@ -145,7 +151,9 @@ def _wall(constants, g_u, g_v, u, v):
 
 
 @device
-def facades(hits, count, texels, columns, rows, constants, shades):
+def facades(
+    hits: Hits, count: int, texels: Texels, columns: float, rows: float, constants: Uniforms, shades: Shades
+) -> None:
     """On steep hits: the facade tile as albedo and the wall's own normal (section 4.2). Few fragments: one by one."""
     for i in range(count):
         if not hits.steep[i]:
@@ -163,7 +171,7 @@ def facades(hits, count, texels, columns, rows, constants, shades):
 
 
 @device
-def light_hits(hits, count, constants, shades):
+def light_hits(hits: Hits, count: int, constants: Uniforms, shades: Shades) -> None:
     """Phong: albedo (ambient + diffuse lit max(0, n.l)) + specular lit max(0, r.v)^e where n.l > 0."""
     light, eye = homogeneous(constants.light_world), homogeneous(constants.eye_world)
     c, a = constants.corner, constants.axes

@@ -4,20 +4,24 @@ n = trunc(n_max (1 - w_z) + n_min w_z), as in its author's shader; the samples k
 at the first with H > 1 - k/n. The hit is where the ray crosses the straight line between the last two samples, whose heights
 above depth 1 are (1 - k/n, H_k) and (1 - (k-1)/n, H_{k-1}); H_0 counts as 1, as in the shader. Without a stop the hit is at
 depth 1. (The shader's fade to normal mapping in the distance is left out.)
+
+Arrays: points (3, P), found and fetches (P,), one a pixel, as in `sought.Sought`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats, Indices, Texels, Whole, Wrap
 from ibr_ref.displacement.below import border, distance_to_eye, in_domain, keep, view_ray
+from ibr_ref.displacement.buffers import Hits, Uniforms
 from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch
 
 
 @device
-def crossing(ray, height, ray_before, height_before):
+def crossing(ray: float, height: float, ray_before: float, height_before: float) -> float:
     """Height at which the ray crosses the line between two samples; 0 where they run in parallel, as in the shader."""
     delta, delta_before = ray - height, ray_before - height_before
     denominator = delta_before - delta
@@ -25,13 +29,18 @@ def crossing(ray, height, ray_before, height_before):
 
 
 @device
-def _march(repeat, points, pixel, constants, texels, columns, rows, least, most, found, fetches):
+def _march(
+    repeat: Wrap, points: Floats, pixel: int, constants: Uniforms, texels: Texels, columns: float, rows: float,
+    least: int, most: int, found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
+    """The hit of a pixel."""
     u, v, along_u, along_v, seen = view_ray(points, pixel, constants.eye)
     if not seen:
         return
     bounded = repeat is None
     cosine = constants.scale / distance_to_eye(constants, along_u, along_v)
     count = np.int64(most + (least - most) * cosine)  # HLSL's lerp: exact where both are the same
+    step: Whole
     margin, nearest, before, step, depth = np.inf, np.inf, 1.0, count, 1.0
     for k in range(1, count + 1):
         ray = 1.0 - k / count
@@ -53,7 +62,10 @@ def _march(repeat, points, pixel, constants, texels, columns, rows, least, most,
 
 
 @kernel
-def tatarchuk_search(repeat, points, constants, texels, columns, rows, least, most, found, fetches):
+def tatarchuk_search(
+    repeat: Wrap, points: Floats, constants: Uniforms, texels: Texels, columns: float, rows: float, least: int,
+    most: int, found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
     """Hits of all pixels. least, most: n_min and n_max."""
     for pixel in prange(len(fetches)):
         _march(repeat, points, pixel, constants, texels, columns, rows, least, most, found, fetches)

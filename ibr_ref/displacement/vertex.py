@@ -70,8 +70,13 @@ def extended_base(eye: Floats) -> Floats:
 
 
 @routine
-def transform(patch, corner, axes, view_from_world, clip_from_view, clip):
-    """Patch -> world -> view -> clip, one after the other, for each vertex."""
+def transform(
+    patch: Floats, corner: Floats, axes: Floats, view_from_world: Floats, clip_from_view: Floats, clip: Floats
+) -> None:
+    """Patch -> world -> view -> clip, one after the other, for each vertex: patch (V, 3), clip (V, 4).
+
+    corner (3,), axes (3, 3) and the two matrices (4, 4) as in `Uniforms`.
+    """
     for i in range(len(patch)):
         u, v, h = patch[i, 0], patch[i, 1], patch[i, 2]
         x = corner[0] + u * axes[0, 0] + v * axes[1, 0] + h * axes[2, 0]

@@ -2,18 +2,26 @@
 
 T = C + H(C) s w_xy, w the unit vector to the eye in the polygon's own frame: not divided by w's height, so that the offset
 never exceeds the height itself. Nothing is displaced: the hit lies on the polygon, at the texture coordinates T.
+
+Arrays: points (3, P), found and fetches (P,), one a pixel, as in `sought.Sought`.
 """
 
 from __future__ import annotations
 
+from ibr_ref.array_types import Floats, Indices, Texels, Wrap
 from ibr_ref.displacement.below import distance_to_eye, keep, view_ray
+from ibr_ref.displacement.buffers import Hits, Uniforms
 from ibr_ref.displacement.sought import Sought
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import fetch
 
 
 @device
-def _offset(repeat, points, pixel, constants, texels, columns, rows, found, fetches):
+def _offset(
+    repeat: Wrap, points: Floats, pixel: int, constants: Uniforms, texels: Texels, columns: float, rows: float,
+    found: Hits, fetches: Indices,
+) -> None:  # fmt: skip
+    """The offset of a pixel."""
     u, v, along_u, along_v, seen = view_ray(points, pixel, constants.eye)
     if not seen:
         return
@@ -24,7 +32,10 @@ def _offset(repeat, points, pixel, constants, texels, columns, rows, found, fetc
 
 
 @kernel
-def welsh_search(repeat, points, constants, texels, columns, rows, found, fetches):
+def welsh_search(
+    repeat: Wrap, points: Floats, constants: Uniforms, texels: Texels, columns: float, rows: float, found: Hits,
+    fetches: Indices,
+) -> None:  # fmt: skip
     """Offsets of all pixels."""
     for pixel in prange(len(fetches)):
         _offset(repeat, points, pixel, constants, texels, columns, rows, found, fetches)

@@ -8,7 +8,7 @@ from ibr_ref.jit import device
 
 
 @device
-def stride_of(bands):
+def stride_of(bands: int) -> int:
     """The bands turn * stride % bands, for all turns: each once, in an order that gives every thread an even sample."""
     stride = max(1, int(bands * 0.618))
     while np.gcd(stride, bands) != 1:

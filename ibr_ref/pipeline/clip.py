@@ -4,6 +4,9 @@ Near plane z >= 0, then far plane z <= w; the polygon is fanned from its first v
 outside the guard band of +-2^20 pixels around the picture's centre is the polygon cut there too, so that the edge
 functions fit into 64 bits. The crossing of an edge is computed from its inside vertex to its outside one: two
 triangles that share the edge get the same point, in whichever direction they run through it.
+
+Arrays: clip (V, 4), varyings (V, K), indices (T, 3); polygon, spare, result (9, 4 + K), a vertex's clip coordinates and then
+its varyings; out_clip, out_varyings, out_source as in `ClippedTriangles`, with room for all.
 """
 
 from __future__ import annotations
@@ -13,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Indices
 from ibr_ref.jit import device, routine
 from ibr_ref.pipeline.sampling import lerp
 
@@ -30,7 +34,7 @@ class ClippedTriangles(NamedTuple):
 
 
 @device
-def _distance(plane, x, y, z, w, guard_x, guard_y):
+def _distance(plane: int, x: float, y: float, z: float, w: float, guard_x: float, guard_y: float) -> float:
     """Signed distance from a clip plane, in clip units: >= 0 inside."""
     if plane == _NEAR:
         return z
@@ -46,12 +50,13 @@ def _distance(plane, x, y, z, w, guard_x, guard_y):
 
 
 @device
-def _plane_distance(plane, polygon, i, guard_x, guard_y):
+def _plane_distance(plane: int, polygon: Floats, i: int, guard_x: float, guard_y: float) -> float:
+    """The same of a polygon's vertex i."""
     return _distance(plane, polygon[i, 0], polygon[i, 1], polygon[i, 2], polygon[i, 3], guard_x, guard_y)
 
 
 @device
-def _cut(plane, polygon, count, result, guard_x, guard_y):
+def _cut(plane: int, polygon: Floats, count: int, result: Floats, guard_x: float, guard_y: float) -> int:
     """One Sutherland-Hodgman step: cut `polygon[:count]` (clip coordinates, then varyings) into `result`; its count."""
     kept = 0
     for i in range(count):
@@ -72,7 +77,8 @@ def _cut(plane, polygon, count, result, guard_x, guard_y):
 
 
 @device
-def _needs_guard(polygon, count, guard_x, guard_y):
+def _needs_guard(polygon: Floats, count: int, guard_x: float, guard_y: float) -> bool:
+    """Whether any of the polygon's first `count` vertices lies outside the guard band."""
     for i in range(count):
         w = polygon[i, 3]
         if abs(polygon[i, 0]) > guard_x * w or abs(polygon[i, 1]) > guard_y * w:
@@ -81,7 +87,7 @@ def _needs_guard(polygon, count, guard_x, guard_y):
 
 
 @device
-def _clip_polygon(polygon, spare, guard_x, guard_y):
+def _clip_polygon(polygon: Floats, spare: Floats, guard_x: float, guard_y: float) -> int:
     """Clip the triangle in `polygon[:3]` in place, an even number of cuts; the number of vertices left (0: nothing)."""
     count, here, there = 3, polygon, spare
     for plane in range(_TOP + 1):  # a plane that is known at compile time is compiled for by itself, six times all
@@ -93,7 +99,7 @@ def _clip_polygon(polygon, spare, guard_x, guard_y):
 
 
 @device
-def _outside(clip, indices, triangle, guard_x, guard_y):
+def _outside(clip: Floats, indices: Indices, triangle: int, guard_x: float, guard_y: float) -> bool:
     """Whether any plane has to cut the triangle."""
     for corner in range(3):
         i = indices[triangle, corner]
@@ -104,7 +110,9 @@ def _outside(clip, indices, triangle, guard_x, guard_y):
 
 
 @device
-def _emit(polygon, count, triangle, total, out_clip, out_varyings, out_source):
+def _emit(
+    polygon: Floats, count: int, triangle: int, total: int, out_clip: Floats, out_varyings: Floats, out_source: Indices
+) -> int:
     """Append the fan of `polygon[:count]` to the output."""
     for fan in range(count - 2):
         out_source[total] = triangle
@@ -120,7 +128,10 @@ def _emit(polygon, count, triangle, total, out_clip, out_varyings, out_source):
 
 
 @device
-def _keep(clip, varyings, indices, triangle, total, out_clip, out_varyings, out_source):
+def _keep(
+    clip: Floats, varyings: Floats, indices: Indices, triangle: int, total: int, out_clip: Floats, out_varyings: Floats,
+    out_source: Indices,
+) -> None:  # fmt: skip
     """Append a triangle that no plane cuts to the output."""
     out_source[total] = triangle
     for corner in range(3):
@@ -132,7 +143,10 @@ def _keep(clip, varyings, indices, triangle, total, out_clip, out_varyings, out_
 
 
 @routine
-def _clip(clip, varyings, indices, guard_x, guard_y, out_clip, out_varyings, out_source):
+def _clip(
+    clip: Floats, varyings: Floats, indices: Indices, guard_x: float, guard_y: float, out_clip: Floats,
+    out_varyings: Floats, out_source: Indices,
+) -> int:  # fmt: skip
     """Clip all triangles in order; the number of triangles that are left."""
     polygon = np.empty((_MOST, 4 + varyings.shape[1]))
     spare = np.empty_like(polygon)
@@ -152,7 +166,7 @@ def _clip(clip, varyings, indices, guard_x, guard_y, out_clip, out_varyings, out
 
 
 @routine
-def _most_triangles(clip, indices, guard_x, guard_y):
+def _most_triangles(clip: Floats, indices: Indices, guard_x: float, guard_y: float) -> int:
     """Room for all results: a triangle with all corners inside stays one, another becomes at most a fan of seven."""
     room = 0
     for triangle in range(len(indices)):

@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Bools, Floats
 from ibr_ref.jit import routine
 from ibr_ref.pipeline.clip import GUARD, clip_triangles
-from ibr_ref.pipeline.triangles import columns_in_row, edges_in_row, set_up
+from ibr_ref.pipeline.triangles import Triangles, columns_in_row, edges_in_row, set_up
 
 NEAR, FAR, OUTSIDE, SMALL, DRAWN = range(5)
 """Fates: wholly before the near plane, wholly beyond the far one, beside the picture, between the pixels' centres, or
@@ -75,7 +75,8 @@ def fates_of_triangles(clip: Floats, indices: NDArray[np.int32], width: int, hei
 
 
 @routine
-def _mark_covering(triangles, width, drawn):
+def _mark_covering(triangles: Triangles, width: int, drawn: Bools) -> None:
+    """Set drawn (T,) where a part of the triangle covers a pixel's centre."""
     for t in range(len(triangles.rows)):
         for row in range(triangles.rows[t, 0], triangles.rows[t, 1]):
             first, stop = columns_in_row(edges_in_row(triangles.x[t], triangles.y[t], row), width)

@@ -6,6 +6,8 @@ Two passes. The first finds the nearest of the splats that cover a pixel: the de
 weights and weighted colours of those that are no farther behind it than a share of its distance, which stands for the
 modified A-buffer of the paper: one surface is blended, what lies behind it is not. Sums run in submission order, whatever
 the number of threads: each band of rows belongs to one of them.
+
+Arrays: colors (N, 3); spans, members and starts as in `points.Shares`, members of one band alone where a band is drawn.
 """
 
 from __future__ import annotations
@@ -15,12 +17,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Floats, Indices, Ints
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.memory import arrays
 from ibr_ref.pipeline.merge import passes
-from ibr_ref.pipeline.points import BAND_ROWS, Shares, share_out, snapped
+from ibr_ref.pipeline.points import BAND_ROWS, Shares, Spans, share_out, snapped
 
 MOST_CUTOFF = 8.0
 """Standard deviations: `gaussian` is exact to a few units in the last place up to there."""
@@ -86,7 +88,7 @@ def blend_for(width: int, height: int, keep: bool, top: int = 0) -> Blend:
 
 
 @device
-def gaussian(q):
+def gaussian(q: float) -> float:
     """exp(-q/2) for 0 <= q <= MOST_CUTOFF^2: the same bits everywhere, which no library's exp promises.
 
     The series of exp(q/128), then six squarings, then the inverse.
@@ -101,13 +103,13 @@ def gaussian(q):
 
 
 @device
-def squared_radius(dx, dy, xx, xy, yy, determinant):
+def squared_radius(dx: float, dy: float, xx: float, xy: float, yy: float, determinant: float) -> float:
     """d^T C^-1 d."""
     return (yy * (dx * dx) - 2.0 * xy * (dx * dy) + xx * (dy * dy)) / determinant
 
 
 @device
-def _note(row, column, z, target):
+def _note(row: int, column: int, z: float, target: Blend) -> None:
     """For the stages: how many cover a pixel, and the second-nearest of all. Before the depth test, which moves `depth`."""
     if target.overdraw[row, column] > 0:
         target.second[row, column] = min(target.second[row, column], max(z, target.depth[row, column]))
@@ -115,7 +117,7 @@ def _note(row, column, z, target):
 
 
 @device
-def _test(row, column, z, distance, index, target):
+def _test(row: int, column: int, z: float, distance: float, index: np.int32, target: Blend) -> None:
     """Depth test and write."""
     if passes(z, target.depth[row, column]):
         target.depth[row, column], target.distance[row, column] = z, distance
@@ -123,7 +125,10 @@ def _test(row, column, z, distance, index, target):
 
 
 @device
-def _nearest_band(ellipses, spans, members, cutoff, first_row, base, target):
+def _nearest_band(
+    ellipses: Ellipses, spans: Spans, members: Indices, cutoff: float, first_row: int, base: int, target: Blend
+) -> None:
+    """First pass over the rows of a band from first_row on."""
     last_row = min(target.splat.shape[0], first_row + BAND_ROWS)
     most = cutoff * cutoff
     for i in members:
@@ -139,7 +144,10 @@ def _nearest_band(ellipses, spans, members, cutoff, first_row, base, target):
 
 
 @kernel
-def _nearest(ellipses, spans, members, starts, cutoff, base, target):
+def _nearest(
+    ellipses: Ellipses, spans: Spans, members: Indices, starts: Ints, cutoff: float, base: int, target: Blend
+) -> None:
+    """First pass."""
     bands = len(starts) - 1
     stride = stride_of(bands)
     for turn in prange(bands):
@@ -149,7 +157,8 @@ def _nearest(ellipses, spans, members, starts, cutoff, base, target):
 
 
 @device
-def _add(row, column, weight, colors, i, target):
+def _add(row: int, column: int, weight: float, colors: Floats, i: int, target: Blend) -> None:
+    """One splat's weight and colour at a pixel."""
     target.weight[row, column] += weight
     for channel in range(3):
         target.color[row, column, channel] += weight * colors[i, channel]
@@ -158,7 +167,11 @@ def _add(row, column, weight, colors, i, target):
 
 
 @device
-def _add_band(ellipses, colors, spans, members, cutoff, tolerance, first_row, target):
+def _add_band(
+    ellipses: Ellipses, colors: Floats, spans: Spans, members: Indices, cutoff: float, tolerance: float, first_row: int,
+    target: Blend,
+) -> None:  # fmt: skip
+    """Second pass over the rows of a band from first_row on."""
     last_row = min(target.splat.shape[0], first_row + BAND_ROWS)
     most, reach = cutoff * cutoff, 1.0 + tolerance
     for i in members:
@@ -173,7 +186,11 @@ def _add_band(ellipses, colors, spans, members, cutoff, tolerance, first_row, ta
 
 
 @kernel
-def _accumulate(ellipses, colors, spans, members, starts, cutoff, tolerance, target):
+def _accumulate(
+    ellipses: Ellipses, colors: Floats, spans: Spans, members: Indices, starts: Ints, cutoff: float, tolerance: float,
+    target: Blend,
+) -> None:  # fmt: skip
+    """Second pass."""
     bands = len(starts) - 1
     stride = stride_of(bands)
     for turn in prange(bands):
@@ -199,7 +216,8 @@ def _shares(ellipses: Ellipses, cutoff: float, target: Blend) -> Shares:
 
 
 @device
-def _normalize_row(background, weight, color):
+def _normalize_row(background: Floats, weight: Floats, color: Floats) -> None:
+    """background (3,), weight (W,), color (W, 3)."""
     for column in range(len(weight)):
         shown = weight[column] > 0.0
         for channel in range(3):
@@ -208,7 +226,7 @@ def _normalize_row(background, weight, color):
 
 
 @kernel
-def normalize(background, weight, color):
-    """Sums of weighted colours (H, W, 3) become averages; the background (3,) where nothing was added."""
+def normalize(background: Floats, weight: Floats, color: Floats) -> None:
+    """Sums of weighted colours (H, W, 3) become averages; the background (3,) where nothing was added: weight (H, W)."""
     for row in prange(len(weight)):
         _normalize_row(background, weight[row], color[row])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import IndexLanes, Lanes, Texels, Wrap
 from ibr_ref.jit import LANES, device, inlined
 from ibr_ref.pipeline.mixes import mix_cross, mix_pairs, mix_triples
 from ibr_ref.pipeline.sampling import footprint
@@ -15,7 +16,10 @@ from ibr_ref.pipeline.waves import gather, index_lanes, lanes
 
 
 @inlined
-def _footprints(columns, rows, repeat, u, v, i00, i10, i01, i11, fx, fy):
+def _footprints(
+    columns: float, rows: float, repeat: Wrap, u: Lanes, v: Lanes, i00: IndexLanes, i10: IndexLanes, i01: IndexLanes,
+    i11: IndexLanes, fx: Lanes, fy: Lanes,
+) -> None:  # fmt: skip
     for lane in range(LANES):
         t00, t10, t01, t11, fx[lane], fy[lane] = footprint(u[lane], v[lane], columns, rows, repeat)
         i00[lane], i10[lane] = np.int32(t00), np.int32(t10)
@@ -23,7 +27,7 @@ def _footprints(columns, rows, repeat, u, v, i00, i10, i01, i11, fx, fy):
 
 
 @inlined
-def _mix(t00, t10, t01, t11, fx, fy, out):
+def _mix(t00: Lanes, t10: Lanes, t01: Lanes, t11: Lanes, fx: Lanes, fy: Lanes, out: Lanes) -> None:
     for lane in range(LANES):
         top = t00[lane] * (1.0 - fx[lane]) + t10[lane] * fx[lane]
         bottom = t01[lane] * (1.0 - fx[lane]) + t11[lane] * fx[lane]
@@ -31,7 +35,9 @@ def _mix(t00, t10, t01, t11, fx, fy, out):
 
 
 @inlined
-def _inner_footprints(columns, rows, u, v, upper, lower, fx, fy):
+def _inner_footprints(
+    columns: float, rows: float, u: Lanes, v: Lanes, upper: IndexLanes, lower: IndexLanes, fx: Lanes, fy: Lanes
+) -> bool:
     """Footprints inside the map, and whether all lie there: else those that do not name the first texel.
 
     A lane without a place, NaN, mixes to NaN whatever it reads.
@@ -50,7 +56,7 @@ def _inner_footprints(columns, rows, u, v, upper, lower, fx, fy):
 
 
 @device
-def fetch_wave(texels, columns, rows, repeat, u, v, out):
+def fetch_wave(texels: Texels, columns: float, rows: float, repeat: Wrap, u: Lanes, v: Lanes, out: Lanes) -> None:
     """A one-channel texture at a wave's (u, v), into `out`."""
     i00, i10, i01, i11 = index_lanes(), index_lanes(), index_lanes(), index_lanes()
     fx, fy = lanes(), lanes()
@@ -67,7 +73,9 @@ def fetch_wave(texels, columns, rows, repeat, u, v, out):
 
 
 @device
-def fetch_color_wave(texels, columns, rows, repeat, u, v, red, green, blue):
+def fetch_color_wave(
+    texels: Texels, columns: float, rows: float, repeat: Wrap, u: Lanes, v: Lanes, red: Lanes, green: Lanes, blue: Lanes
+) -> None:
     """A three-channel texture at a wave's (u, v): the channels, which lie side by side, are read together."""
     i00, i10, i01, i11 = index_lanes(), index_lanes(), index_lanes(), index_lanes()
     fx, fy = lanes(), lanes()
@@ -76,7 +84,10 @@ def fetch_color_wave(texels, columns, rows, repeat, u, v, red, green, blue):
 
 
 @inlined
-def _crosses(columns, rows, u, v, step_u, step_v, corner, fx, fy, left_fx, right_fx, above_fy, below_fy):
+def _crosses(
+    columns: float, rows: float, u: Lanes, v: Lanes, step_u: float, step_v: float, corner: IndexLanes, fx: Lanes,
+    fy: Lanes, left_fx: Lanes, right_fx: Lanes, above_fy: Lanes, below_fy: Lanes,
+) -> bool:  # fmt: skip
     """What `mix_cross` is given, and whether all lanes have their four footprints side by side inside the map."""
     outside = 0
     for lane in range(LANES):
@@ -97,7 +108,10 @@ def _crosses(columns, rows, u, v, step_u, step_v, corner, fx, fy, left_fx, right
 
 
 @device
-def fetch_cross_wave(texels, columns, rows, repeat, u, v, left, right, above, below):
+def fetch_cross_wave(
+    texels: Texels, columns: float, rows: float, repeat: Wrap, u: Lanes, v: Lanes, left: Lanes, right: Lanes,
+    above: Lanes, below: Lanes,
+) -> None:  # fmt: skip
     """A one-channel texture one texel beside a wave's (u, v), along u and along v: at (u - 1/columns, v) and so on.
 
     Where rounding puts such a place into another texel than the next one, and at the borders, each is fetched by itself.

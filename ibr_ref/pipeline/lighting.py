@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats, Lanes, Vector3, Vector4
 from ibr_ref.jit import LANES, device
 
 
 @device
-def unit(x, y, z):
+def unit(x: float, y: float, z: float) -> Vector3:
     """The vector divided by its length; zero stays zero."""
     length = np.sqrt(x * x + y * y + z * z)
     length = length if length > 0.0 else 1.0
@@ -19,13 +20,13 @@ def unit(x, y, z):
 
 
 @device
-def homogeneous(array):
+def homogeneous(array: Floats) -> Vector4:
     """A homogeneous point or direction (4,) as scalars, which loops over lanes need not read again."""
     return array[0], array[1], array[2], array[3]
 
 
 @device
-def towards(source, x, y, z):
+def towards(source: Vector4, x: float, y: float, z: float) -> Vector3:
     """Unit vector from a world point towards a homogeneous one."""
     if source[3] == 0.0:
         return source[0], source[1], source[2]
@@ -33,7 +34,10 @@ def towards(source, x, y, z):
 
 
 @device
-def light_wave(light, eye, specular, exponent, x, y, z, nx, ny, nz, lit, cosine, power, shine):
+def light_wave(
+    light: Vector4, eye: Vector4, specular: float, exponent: int, x: Lanes, y: Lanes, z: Lanes, nx: Lanes,
+    ny: Lanes, nz: Lanes, lit: Lanes, cosine: Lanes, power: Lanes, shine: Lanes,
+) -> None:  # fmt: skip
     """n.l and the highlight of a wave: world points (x, y, z) with unit normals n, lit 1, or 0 in shadow.
 
     The highlight is specular lit max(0, r.v)^exponent where n.l > 0, with r = 2 (n.l) n - l, into shine, which must be 0
@@ -62,7 +66,7 @@ def light_wave(light, eye, specular, exponent, x, y, z, nx, ny, nz, lit, cosine,
 
 
 @device
-def lit_channel(albedo, ambient, bright, shine):
+def lit_channel(albedo: float, ambient: float, bright: float, shine: float) -> float:
     """One channel of the colour: albedo (ambient + bright) + shine, clamped to [0, 1]."""
     colour = albedo * (ambient + bright) + shine
     colour = colour if colour > 0.0 else 0.0

@@ -7,17 +7,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats
 from ibr_ref.jit import device, kernel, prange
 
 
 @device
-def passes(depth, stored):
+def passes(depth: float, stored: float) -> bool:
     """Depth test LESS: on a tie the earlier primitive stays."""
     return depth < stored
 
 
 @device
-def to_unorm8(value):
+def to_unorm8(value: float) -> float:
     """The nearest of the 256 levels of [0, 1], as a float: floor(255 c + 0.5)/255 after clamping."""
     value = value if value > 0.0 else 0.0
     value = value if value < 1.0 else 1.0
@@ -25,7 +26,7 @@ def to_unorm8(value):
 
 
 @kernel
-def blend_add(target, source, alpha, unorm8):
+def blend_add(target: Floats, source: Floats, alpha: float, unorm8: bool) -> None:
     """Additive alpha blending (GL_SRC_ALPHA, GL_ONE): target += alpha source, both flat float64 arrays.
 
     unorm8: alpha and every sum are rounded to 8 bits and saturate, as in an 8-bit frame buffer.

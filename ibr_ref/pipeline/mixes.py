@@ -9,37 +9,41 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
-from ibr_ref.jit import LANES, config, device
+from ibr_ref.array_types import IndexLanes, Lanes, Texels
+from ibr_ref.jit import LANES, device
+from ibr_ref.pipeline.waves import emitted
 
 __all__ = ["mix_cross", "mix_pairs", "mix_triples"]
-
-_PLAIN = bool(config.DISABLE_JIT or config.BOUNDSCHECK)
 
 
 # --- What they mean --------------------------------------------------------------------------------------------------
 
 
 @device
-def _mixed(t00, t10, t01, t11, fx, fy):
+def _mixed(t00: float, t10: float, t01: float, t11: float, fx: float, fy: float) -> float:
     top = t00 * (1.0 - fx) + t10 * fx
     bottom = t01 * (1.0 - fx) + t11 * fx
     return top * (1.0 - fy) + bottom * fy
 
 
 @device
-def _mix_pairs(texels, upper, lower, fx, fy, out):
+def _mix_pairs(texels: Texels, upper: IndexLanes, lower: IndexLanes, fx: Lanes, fy: Lanes, out: Lanes) -> None:
     for lane in range(LANES):
         i, j = upper[lane], lower[lane]
         out[lane] = _mixed(texels[i], texels[i + 1], texels[j], texels[j + 1], fx[lane], fy[lane])
 
 
 @device
-def _mix_triples(texels, i00, i10, i01, i11, fx, fy, first, second, third):
+def _mix_triples(
+    texels: Texels, i00: IndexLanes, i10: IndexLanes, i01: IndexLanes, i11: IndexLanes, fx: Lanes, fy: Lanes,
+    first: Lanes, second: Lanes, third: Lanes,
+) -> None:  # fmt: skip
     for lane in range(LANES):
         a, b, c, d = 3 * i00[lane], 3 * i10[lane], 3 * i01[lane], 3 * i11[lane]
         f, g = fx[lane], fy[lane]
@@ -49,7 +53,10 @@ def _mix_triples(texels, i00, i10, i01, i11, fx, fy, first, second, third):
 
 
 @device
-def _mix_cross(texels, columns, corner, fx, fy, left_fx, right_fx, above_fy, below_fy, left, right, above, below):
+def _mix_cross(
+    texels: Texels, columns: np.int64, corner: IndexLanes, fx: Lanes, fy: Lanes, left_fx: Lanes, right_fx: Lanes,
+    above_fy: Lanes, below_fy: Lanes, left: Lanes, right: Lanes, above: Lanes, below: Lanes,
+) -> None:  # fmt: skip
     for lane in range(LANES):
         i = corner[lane]
         j, k, m = i + columns, i + 2 * columns, i + 3 * columns
@@ -192,14 +199,14 @@ def _emitted_cross(
     return types.void(*names), emit
 
 
-mix_pairs = _mix_pairs if _PLAIN else _emitted_pairs
+mix_pairs = emitted(_mix_pairs, _emitted_pairs)
 """mix_pairs(texels, upper, lower, fx, fy, out): of a one-channel texture, where the second texel of either row follows the
 first. upper, lower: indices (int32) of the first texels."""
 
-mix_triples = _mix_triples if _PLAIN else _emitted_triples
+mix_triples = emitted(_mix_triples, _emitted_triples)
 """mix_triples(texels, i00, i10, i01, i11, fx, fy, first, second, third): of a three-channel texture, channel by channel."""
 
-mix_cross = _mix_cross if _PLAIN else _emitted_cross
+mix_cross = emitted(_mix_cross, _emitted_cross)
 """mix_cross(texels, columns, corner, fx, fy, left_fx, right_fx, above_fy, below_fy, left, right, above, below): of a
 one-channel texture a texel to either side, along u and along v: twelve texels, not sixteen.
 

@@ -5,6 +5,10 @@ A splat of width w at the window position c, rounded to 1/256 pixel, covers the 
 
 The splats are sorted into bands of rows, keeping their order; a band belongs to one thread, which draws its splats one
 after another: one writer per pixel, no locks, and the winner is that of drawing in order for any number of threads.
+
+Arrays: x, y, width, height, depths, left, right, top, stop: (N,), one a splat, or those of a part of the list; members and
+starts as in `Shares`, members of one band alone where a band is drawn; the buffers splat, depth, overdraw and second as in
+`Target`. Rows and columns are those of the buffers.
 """
 
 from __future__ import annotations
@@ -14,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Indices, Ints
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.memory import arrays
@@ -80,13 +85,13 @@ def target_for(width: int, height: int, keep: bool, top: int = 0) -> Target:
 
 
 @device
-def snapped(x):
+def snapped(x: float) -> float:
     """To the nearest 1/256 pixel, ties to even."""
     return np.rint(x * _SUBPIXELS) / _SUBPIXELS
 
 
 @device
-def span(center, width, begin, size):
+def span(center: float, width: float, begin: float, size: float) -> tuple[np.int32, np.int32]:
     """The pixels [first, stop) whose centres lie in [center - width/2, center + width/2), counted from `begin`.
 
     Of `size` pixels from there on. Clamped as floats, as int(nan) is INT_MIN; NaN covers nothing.
@@ -97,14 +102,14 @@ def span(center, width, begin, size):
 
 
 @device
-def _fill_spans(center, width, begin, size, low, high):
+def _fill_spans(center: Floats, width: Floats, begin: float, size: float, low: Indices, high: Indices) -> None:
     """What splats cover along one axis; whole arrays, few of them and no branches, so that LLVM turns it into SIMD."""
     for i in range(len(center)):
         low[i], high[i] = span(snapped(center[i]), width[i], begin, size)
 
 
 @device
-def _bands(left, right, top, stop):
+def _bands(left: int, right: int, top: int, stop: int) -> tuple[np.uint32, np.uint32]:
     """The bands [first, stop) that a splat covers anything in, none of them negative."""
     first = np.uint32(top) >> _BAND_SHIFT
     empty = (left >= right) | (top >= stop)
@@ -112,7 +117,11 @@ def _bands(left, right, top, stop):
 
 
 @device
-def _set_up_part(x, y, width, height, begin, columns, rows, left, right, top, stop, counts):
+def _set_up_part(
+    x: Floats, y: Floats, width: Floats, height: Floats, begin: float, columns: float, rows: float, left: Indices,
+    right: Indices, top: Indices, stop: Indices, counts: Ints,
+) -> None:  # fmt: skip
+    """Spans of a part of the list, and its counts (bands,)."""
     _fill_spans(x, width, 0.0, columns, left, right)
     _fill_spans(y, height, begin, rows, top, stop)
     for i in range(len(x)):
@@ -123,7 +132,10 @@ def _set_up_part(x, y, width, height, begin, columns, rows, left, right, top, st
 
 
 @kernel
-def _set_up(x, y, width, height, begin, columns, rows, spans, counts):
+def _set_up(
+    x: Floats, y: Floats, width: Floats, height: Floats, begin: float, columns: float, rows: float, spans: Spans,
+    counts: Ints,
+) -> None:  # fmt: skip
     """What each splat covers, and how many of each part of the list each band has a share in: counts (parts, bands)."""
     left, right, top, stop = spans
     parts = len(counts)
@@ -137,7 +149,10 @@ def _set_up(x, y, width, height, begin, columns, rows, spans, counts):
 
 
 @device
-def _sort_part(left, right, top, stop, first, last, ends, members):
+def _sort_part(
+    left: Indices, right: Indices, top: Indices, stop: Indices, first: int, last: int, ends: Ints, members: Indices
+) -> None:
+    """Members of the splats [first, last); ends (bands,): where this part's next one goes in each band."""
     for i in range(first, last):
         band, end = _bands(left[i], right[i], top[i], stop[i])
         while band < end:
@@ -147,7 +162,7 @@ def _sort_part(left, right, top, stop, first, last, ends, members):
 
 
 @kernel
-def _sort(spans, ends, members):
+def _sort(spans: Spans, ends: Ints, members: Indices) -> None:
     """Members of each band, in order; `ends` (parts, bands): where each part's share starts, moved to its end."""
     left, right, top, stop = spans
     parts = len(ends)
@@ -158,7 +173,9 @@ def _sort(spans, ends, members):
 
 
 @device
-def _test(row, column, z, index, splat, depth):
+def _test(
+    row: int | np.uint32, column: int | np.uint32, z: float, index: np.int32, splat: Indices, depth: Floats
+) -> None:
     """Depth test and write, without a branch: about every second one passes, which no processor can predict."""
     stored = depth[row, column]
     nearer = passes(z, stored)
@@ -167,7 +184,10 @@ def _test(row, column, z, index, splat, depth):
 
 
 @device
-def _draw_squares(spans, depths, members, first_row, last_row, base, splat, depth):
+def _draw_squares(
+    spans: Spans, depths: Floats, members: Indices, first_row: int, last_row: int, base: int, splat: Indices,
+    depth: Floats,
+) -> None:  # fmt: skip
     """Draw the squares of a band, in order, into its rows [first_row, last_row).
 
     Those of up to 2 x 2 pixels, the usual ones, are tested at their four corners, some of which may be the same pixel:
@@ -191,14 +211,17 @@ def _draw_squares(spans, depths, members, first_row, last_row, base, splat, dept
 
 
 @device
-def covers(disc, column, row, x, y, width):
+def covers(disc: bool, column: int, row: int, x: float, y: float, width: float) -> bool:
     """Whether a disc covers a pixel of its square; a square covers them all."""
     dx, dy = column + 0.5 - x, row + 0.5 - y
     return (not disc) | (dx * dx + dy * dy <= width * width / 4.0)
 
 
 @device
-def _draw_discs(splats, spans, members, first_row, last_row, base, begin, splat, depth):
+def _draw_discs(
+    splats: Splats, spans: Spans, members: Indices, first_row: int, last_row: int, base: int, begin: int,
+    splat: Indices, depth: Floats,
+) -> None:  # fmt: skip
     """Draw the discs of a band, in order, into its rows [first_row, last_row)."""
     xs, ys, depths, widths = splats
     for i in members:
@@ -210,10 +233,13 @@ def _draw_discs(splats, spans, members, first_row, last_row, base, begin, splat,
 
 
 @device
-def _note_band(splats, spans, members, disc, first_row, last_row, begin, depth, overdraw, second):
+def _note_band(
+    splats: Splats, spans: Spans, members: Indices, disc: bool, first_row: int, last_row: int, begin: int,
+    depth: Floats, overdraw: Indices, second: Floats,
+) -> None:  # fmt: skip
     """Before a band is drawn, note for the stages how many of its members cover each pixel, and the second-nearest of all.
 
-    `depth` holds the nearest so far, a copy of the buffer's rows.
+    `depth` (last_row - first_row, W) holds the nearest so far, a copy of the buffer's rows.
     """
     xs, ys, depths, widths = splats
     for i in members:
@@ -229,7 +255,10 @@ def _note_band(splats, spans, members, disc, first_row, last_row, begin, depth, 
 
 
 @device
-def _draw_band(splats, spans, members, disc, first_row, base, target):
+def _draw_band(
+    splats: Splats, spans: Spans, members: Indices, disc: bool, first_row: int, base: int, target: Target
+) -> None:
+    """Note, if the stages are kept, and draw the rows of a band from first_row on."""
     last_row = min(target.splat.shape[0], first_row + BAND_ROWS)
     if len(target.overdraw) > 0:
         nearest = target.depth[first_row:last_row].copy()
@@ -243,7 +272,7 @@ def _draw_band(splats, spans, members, disc, first_row, base, target):
 
 
 @kernel
-def _draw(splats, spans, members, starts, disc, base, target):
+def _draw(splats: Splats, spans: Spans, members: Indices, starts: Ints, disc: bool, base: int, target: Target) -> None:
     """All bands, in an order that gives every thread an even sample of the picture."""
     bands = len(starts) - 1
     stride = stride_of(bands)

@@ -11,26 +11,30 @@ from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Texels, Wrap
 from ibr_ref.jit import device
+
+Footprint = tuple[np.uint32, np.uint32, np.uint32, np.uint32, float, float]
+"""Indices of the texels t00, t10, t01 and t11, and the fractions fx and fy of the way to the second ones."""
 
 _FAR = 1073741824.0  # 2^30: texel coordinates beyond it are clamped before they become integers
 
 
 @device
-def clamped(x, low, high):
+def clamped(x: float, low: float, high: float) -> float:
     """x in [low, high]; NaN becomes low."""
     x = x if x > low else low
     return x if x < high else high
 
 
 @device
-def lerp(a, b, f):
+def lerp(a: float, b: float, f: float) -> float:
     """a (1 - f) + b f."""
     return a * (1.0 - f) + b * f
 
 
 @device
-def _neighbours(x_floor, size, repeat):
+def _neighbours(x_floor: float, size: float, repeat: Wrap) -> tuple[np.int32, np.int32]:
     """The two neighbouring texel indices along an axis, inside [0, size - 1]; clamped as floats, as int(nan) is INT_MIN."""
     if repeat is None:
         low = np.int32(clamped(x_floor, -1.0, size - 1.0))
@@ -43,7 +47,7 @@ def _neighbours(x_floor, size, repeat):
 
 
 @device
-def footprint(u, v, columns, rows, repeat):
+def footprint(u: float, v: float, columns: float, rows: float, repeat: Wrap) -> Footprint:
     """Bilinear footprint: indices (uint32) of the texels t00, t10, t01, t11, and the fractions fx, fy."""
     x = u * columns - 0.5
     y = v * rows - 0.5
@@ -65,7 +69,7 @@ def footprint(u, v, columns, rows, repeat):
 
 
 @device
-def mix(texels, i00, i10, i01, i11, fx, fy):
+def mix(texels: Texels, i00: np.uint32, i10: np.uint32, i01: np.uint32, i11: np.uint32, fx: float, fy: float) -> float:
     """The bilinear mix of four texels of a one-channel texture."""
     top = texels[i00] * (1.0 - fx) + texels[i10] * fx
     bottom = texels[i01] * (1.0 - fx) + texels[i11] * fx
@@ -73,7 +77,10 @@ def mix(texels, i00, i10, i01, i11, fx, fy):
 
 
 @device
-def mix_channel(texels, channel, i00, i10, i01, i11, fx, fy):
+def mix_channel(
+    texels: Texels, channel: np.uint32, i00: np.uint32, i10: np.uint32, i01: np.uint32, i11: np.uint32, fx: float,
+    fy: float,
+) -> float:  # fmt: skip
     """The bilinear mix of one channel (uint32) of a three-channel texture."""
     three = np.uint32(3)
     top = texels[i00 * three + channel] * (1.0 - fx) + texels[i10 * three + channel] * fx
@@ -82,14 +89,14 @@ def mix_channel(texels, channel, i00, i10, i01, i11, fx, fy):
 
 
 @device
-def fetch(texels, columns, rows, repeat, u, v):
+def fetch(texels: Texels, columns: float, rows: float, repeat: Wrap, u: float, v: float) -> float:
     """Bilinear fetch from a one-channel texture."""
     i00, i10, i01, i11, fx, fy = footprint(u, v, columns, rows, repeat)
     return mix(texels, i00, i10, i01, i11, fx, fy)
 
 
 @device
-def nearest_index(u, v, columns, rows, repeat):
+def nearest_index(u: float, v: float, columns: float, rows: float, repeat: Wrap) -> np.uint32:
     """Index (uint32) of the texel that a nearest fetch reads."""
     x = np.floor(u * columns)
     y = np.floor(v * rows)

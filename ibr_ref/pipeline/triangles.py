@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Ints, Whole
 from ibr_ref.jit import device, routine
 from ibr_ref.pipeline.clip import ClippedTriangles
 
@@ -40,6 +41,10 @@ class Triangles(NamedTuple):
     """(T, 2) first row of pixel centres, and one past the last, inside the picture; (0, 0): covers nothing."""
 
 
+Corners = Ints | tuple[int, int, int]
+"""(3,): a coordinate of a triangle's corners, snapped, in 1/256 pixel."""
+
+
 class Edges(NamedTuple):
     """Edge functions of one triangle in a row: values at column 0, steps from column to column, least value inside."""
 
@@ -55,23 +60,26 @@ class Edges(NamedTuple):
 
 
 @device
-def _window_x(x, w, width):
+def _window_x(x: float, w: float, width: float) -> float:
+    """Of clip x, in pixels."""
     return (x / w + 1.0) / 2.0 * width
 
 
 @device
-def _window_y(y, w, height):
+def _window_y(y: float, w: float, height: float) -> float:
+    """Of clip y, in pixels, downwards."""
     return (1.0 - y / w) / 2.0 * height
 
 
 @device
-def _area(xs, ys):
+def _area(xs: Corners, ys: Corners) -> int:
     """Twice the signed area in 1/256 pixel, positive where the corners run clockwise on the screen (y down)."""
     return (xs[1] - xs[0]) * (ys[2] - ys[0]) - (ys[1] - ys[0]) * (xs[2] - xs[0])
 
 
 @routine
-def _set_up(clip, width, height, x, y, z, w, rows):
+def _set_up(clip: Floats, width: float, height: float, x: Ints, y: Ints, z: Floats, w: Floats, rows: Ints) -> None:
+    """clip (T, 3, 4); the others are filled, as in `Triangles`."""
     for triangle in range(len(clip)):
         for corner in range(3):
             p = clip[triangle, corner]
@@ -109,7 +117,7 @@ def shifted(triangles: Triangles, first: int, stop: int) -> Triangles:
 
 
 @device
-def _edge(ax, ay, bx, by, sign, py):
+def _edge(ax: int, ay: int, bx: int, by: int, sign: int, py: int) -> tuple[int, int, int]:
     """Edge a -> b at column 0 of the row of centres py: value, step a column, least value that is inside."""
     dx = (bx - ax) * sign
     dy = (by - ay) * sign
@@ -119,7 +127,7 @@ def _edge(ax, ay, bx, by, sign, py):
 
 
 @device
-def edges_in_row(xs, ys, row):
+def edges_in_row(xs: Corners, ys: Corners, row: int) -> Edges:
     """The three edge functions of a triangle along a row of pixel centres; positive inside for both orientations."""
     py = row * SUBPIXELS + SUBPIXELS // 2
     sign = 1 if _area(xs, ys) > 0 else -1
@@ -130,14 +138,14 @@ def edges_in_row(xs, ys, row):
 
 
 @device
-def fall_of(xs, ys):
+def fall_of(xs: Corners, ys: Corners) -> tuple[int, int, int]:
     """By how much the edge functions are larger in the next row."""
     here, below = edges_in_row(xs, ys, 0), edges_in_row(xs, ys, 1)
     return below.e0 - here.e0, below.e1 - here.e1, below.e2 - here.e2
 
 
 @device
-def moved_down(edges, fall):
+def moved_down(edges: Edges, fall: tuple[int, int, int]) -> Edges:
     """The edge functions in the next row."""
     return Edges(
         edges.e0 + fall[0],
@@ -153,7 +161,7 @@ def moved_down(edges, fall):
 
 
 @device
-def columns_of(xs, width):
+def columns_of(xs: Corners, width: int) -> tuple[Whole, Whole]:
     """The columns [first, stop) of the picture whose centres lie between the corners: a triangle covers no other."""
     low, high, half = min(xs[0], xs[1], xs[2]), max(xs[0], xs[1], xs[2]), SUBPIXELS // 2
     first = max(np.int64(0), (low - half + SUBPIXELS - 1) // SUBPIXELS)
@@ -161,7 +169,7 @@ def columns_of(xs, width):
 
 
 @device
-def _narrow(value, step, least, first, stop):
+def _narrow(value: int, step: int, least: int, first: Whole, stop: Whole) -> tuple[int, int]:
     """The columns of [first, stop) where value + column * step >= least."""
     if stop - first <= FEW_COLUMNS:
         while first < stop and value + step * first < least:
@@ -177,13 +185,13 @@ def _narrow(value, step, least, first, stop):
 
 
 @device
-def columns_in_row(edges, width):
+def columns_in_row(edges: Edges, width: int) -> tuple[int, int]:
     """The columns [first, stop) of the picture that the triangle covers in this row."""
     return columns_within(edges, np.int64(0), np.int64(width))
 
 
 @device
-def columns_within(edges, first, stop):
+def columns_within(edges: Edges, first: Whole, stop: Whole) -> tuple[int, int]:
     """Those of [first, stop)."""
     first, stop = _narrow(edges.e0, edges.step0, edges.least0, first, stop)
     first, stop = _narrow(edges.e1, edges.step1, edges.least1, first, stop)
@@ -192,16 +200,16 @@ def columns_within(edges, first, stop):
 
 
 @device
-def _unit(a):
+def _unit(a: float) -> bool:
     return a == 0.0 or a == 1.0
 
 
 @device
-def fill_varyings(edges, first, stop, corners, w, out, start):
+def fill_varyings(edges: Edges, first: int, stop: int, corners: Floats, w: Floats, out: Floats, start: int) -> None:
     """Perspective-correct varyings with the values `corners` (3, K), for the columns [first, stop), into out[:, start:].
 
     A varying that is the same at all corners and 0 or 1 is so exactly, by the same formula: it needs no division. Where the
-    corners have 0 and 1, E a / w is (E / w) a exactly: that needs fewer.
+    corners have 0 and 1, E a / w is (E / w) a exactly: that needs fewer. w (3,), out (K, F).
     """
     w0, w1, w2 = w[0], w[1], w[2]
     for k in range(corners.shape[1]):
@@ -228,8 +236,8 @@ def fill_varyings(edges, first, stop, corners, w, out, start):
 
 
 @device
-def fill_depth(edges, first, stop, z, out, out_first):
-    """Write the window depth for the columns [first, stop) to out."""
+def fill_depth(edges: Edges, first: int, stop: int, z: Floats, out: Floats, out_first: int) -> None:
+    """Write the window depth, z (3,) at the corners, for the columns [first, stop) to out (F,), from out_first on."""
     z0, z1, z2 = z[0], z[1], z[2]
     total = np.float64(edges.e0 + edges.e1 + edges.e2)
     for i in range(stop - first):

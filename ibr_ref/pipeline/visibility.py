@@ -2,6 +2,9 @@
 
 For passes without discard or depth changes in the fragment stage. Triangles are sorted into bands of rows; a band
 belongs to one thread, which draws its triangles in submission order, so that ties go to the earlier one.
+
+Arrays: rows (T, 2) as in `Triangles`; counts, ends (bands,); members, indices of triangles band by band, and starts
+(bands + 1,), or the members of one band; winner and depth (H, W) as in `Visible`; spare: a row's numbers.
 """
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bytes, Floats, Indices, Ints
 from ibr_ref.jit import device, kernel, prange, routine
 from ibr_ref.pipeline.bands import stride_of
 from ibr_ref.pipeline.merge import passes
@@ -38,7 +42,8 @@ class Visible(NamedTuple):
 
 
 @routine
-def _count_in_bands(rows, counts):
+def _count_in_bands(rows: Ints, counts: Ints) -> None:
+    """How many triangles each band has a share in."""
     for t in range(len(rows)):
         if rows[t, 1] > rows[t, 0]:
             for band in range(rows[t, 0] // BAND_ROWS, (rows[t, 1] - 1) // BAND_ROWS + 1):
@@ -46,7 +51,7 @@ def _count_in_bands(rows, counts):
 
 
 @routine
-def _sort_into_bands(rows, ends, members):
+def _sort_into_bands(rows: Ints, ends: Ints, members: Indices) -> None:
     """Triangles of each band in submission order; `ends` holds the band's start and is moved to its end."""
     for t in range(len(rows)):
         if rows[t, 1] > rows[t, 0]:
@@ -66,7 +71,9 @@ def _bands(triangles: Triangles, height: int) -> tuple[NDArray[np.int32], NDArra
 
 
 @device
-def _draw_triangle(triangles, t, first_row, last_row, spare, winner, depth):
+def _draw_triangle(
+    triangles: Triangles, t: int, first_row: int, last_row: int, spare: Floats, winner: Indices, depth: Floats
+) -> None:
     """Depth-test one triangle in the rows [first_row, last_row) of the picture."""
     xs, ys, from_row = triangles.x[t], triangles.y[t], max(first_row, triangles.rows[t, 0])
     low, high = columns_of(xs, winner.shape[1])
@@ -82,7 +89,10 @@ def _draw_triangle(triangles, t, first_row, last_row, spare, winner, depth):
 
 
 @device
-def _draw_band(triangles, members, first_row, last_row, winner, depth):
+def _draw_band(
+    triangles: Triangles, members: Indices, first_row: int, last_row: int, winner: Indices, depth: Floats
+) -> None:
+    """Clear the rows [first_row, last_row) and draw a band's triangles there."""
     spare = np.empty(winner.shape[1])
     for row in range(first_row, last_row):
         for column in range(winner.shape[1]):
@@ -93,7 +103,8 @@ def _draw_band(triangles, members, first_row, last_row, winner, depth):
 
 
 @kernel
-def _draw(triangles, members, starts, winner, depth):
+def _draw(triangles: Triangles, members: Indices, starts: Ints, winner: Indices, depth: Floats) -> None:
+    """All bands."""
     bands = len(starts) - 1
     stride = stride_of(bands)
     for turn in prange(bands):
@@ -112,7 +123,8 @@ def visible(triangles: Triangles, width: int, height: int) -> Visible:
 
 
 @device
-def _cover_band(triangles, members, first_row, last_row, out):
+def _cover_band(triangles: Triangles, members: Indices, first_row: int, last_row: int, out: Bytes) -> None:
+    """Out (H, W) in the rows [first_row, last_row): 1 where a triangle of the band covers the pixel."""
     for row in range(first_row, last_row):
         for column in range(out.shape[1]):
             out[row, column] = 0
@@ -131,7 +143,8 @@ def _cover_band(triangles, members, first_row, last_row, out):
 
 
 @kernel
-def _cover(triangles, members, starts, out):
+def _cover(triangles: Triangles, members: Indices, starts: Ints, out: Bytes) -> None:
+    """All bands: out (H, W)."""
     bands = len(starts) - 1
     stride = stride_of(bands)
     for turn in prange(bands):
@@ -150,8 +163,8 @@ def covered(triangles: Triangles, width: int, height: int) -> NDArray[np.uint8]:
 
 
 @device
-def _varyings_in_row(triangles, winner, row, spare, out):
-    """Runs of pixels that show the same triangle get their varyings together."""
+def _varyings_in_row(triangles: Triangles, winner: Indices, row: int, spare: Floats, out: Floats) -> None:
+    """Runs of pixels that show the same triangle get their varyings together: out (H, W, K), spare (K, W)."""
     column, width = 0, winner.shape[1]
     while column < width:
         t, first = winner[row, column], column
@@ -166,7 +179,8 @@ def _varyings_in_row(triangles, winner, row, spare, out):
 
 
 @kernel
-def _interpolate(triangles, winner, out):
+def _interpolate(triangles: Triangles, winner: Indices, out: Floats) -> None:
+    """out (H, W, K)."""
     for row in prange(winner.shape[0]):
         _varyings_in_row(triangles, winner, row, np.empty((out.shape[2], winner.shape[1])), out)
 

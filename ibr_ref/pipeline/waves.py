@@ -5,11 +5,12 @@ the lanes are made on the stack of the kernel that uses them, and what moves who
 them, is emitted here as vector instructions (loops and the heap for all: twice the time, measured).
 
 Each of these is a Python function first: what it means, what runs without compiled kernels, and what is compiled where
-bounds are to be checked.
+bounds are to be checked. An `array` is (F,), with whole waves.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numba
@@ -19,7 +20,8 @@ from numba import types
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array, populate_array
 
-from ibr_ref.jit import LANES, config, device
+from ibr_ref.array_types import Floats, IndexLanes, Indices, Lanes
+from ibr_ref.jit import LANES, Function, config, device
 
 __all__ = [
     "gather",
@@ -34,6 +36,11 @@ __all__ = [
 ]
 
 _PLAIN = bool(config.DISABLE_JIT or config.BOUNDSCHECK)
+
+
+def emitted(meant: Function, instructions: Any) -> Function:
+    """The instructions, which are called as the Python function is that says what they mean; or that one, where it runs."""
+    return meant if _PLAIN else instructions
 
 
 # --- The lanes' arrays -----------------------------------------------------------------------------------------------
@@ -64,10 +71,10 @@ def _on_stack(dtype: type[np.generic]) -> Any:
     return make
 
 
-lanes = _on_stack(np.float64)
+lanes: Callable[[], Lanes] = _on_stack(np.float64)
 """lanes(): an array for the lanes of a wave, not initialized. Only in kernels; it dies with the call of its kernel."""
 
-index_lanes = _on_stack(np.int32)
+index_lanes: Callable[[], IndexLanes] = _on_stack(np.int32)
 """index_lanes(): the same for indices, int32."""
 
 
@@ -75,37 +82,37 @@ index_lanes = _on_stack(np.int32)
 
 
 @device
-def _load(array, first, wave):
+def _load(array: Floats, first: int, wave: Lanes) -> None:
     for lane in range(LANES):
         wave[lane] = array[first + lane]
 
 
 @device
-def _load_indices(array, first, wave):
+def _load_indices(array: Indices, first: int, wave: Lanes) -> None:
     for lane in range(LANES):
         wave[lane] = np.float64(array[first + lane])
 
 
 @device
-def _store(wave, array, first):
+def _store(wave: Lanes, array: Floats, first: int) -> None:
     for lane in range(LANES):
         array[first + lane] = wave[lane]
 
 
 @device
-def _store_indices(wave, array, first):
+def _store_indices(wave: Lanes, array: Indices, first: int) -> None:
     for lane in range(LANES):
         array[first + lane] = np.int32(wave[lane])
 
 
 @device
-def _gather(texels, indices, wave):
+def _gather(texels: Floats, indices: IndexLanes, wave: Lanes) -> None:
     for lane in range(LANES):
         wave[lane] = texels[indices[lane]]
 
 
 @device
-def _smallest(wave):
+def _smallest(wave: Lanes) -> float:
     folded, half = lanes(), LANES
     _load(wave, 0, folded)
     while half > 1:
@@ -116,7 +123,7 @@ def _smallest(wave):
 
 
 @device
-def _largest(wave):
+def _largest(wave: Lanes) -> float:
     folded, half = lanes(), LANES
     _load(wave, 0, folded)
     while half > 1:
@@ -234,23 +241,23 @@ def _largest_of_vector(typing: Any, wave: Any) -> Any:
     return types.float64(wave), emit
 
 
-load = _load if _PLAIN else _load_vector
+load = emitted(_load, _load_vector)
 """load(array, first, wave): copy a wave's elements, from `first`, to its lanes."""
 
-load_indices = _load_indices if _PLAIN else _load_index_vector
+load_indices = emitted(_load_indices, _load_index_vector)
 """load_indices(array, first, wave): the same from indices, int32, to lanes of float64, which hold them exactly."""
 
-store = _store if _PLAIN else _store_vector
+store = emitted(_store, _store_vector)
 """store(wave, array, first): copy the lanes of a wave to their elements."""
 
-store_indices = _store_indices if _PLAIN else _store_index_vector
+store_indices = emitted(_store_indices, _store_index_vector)
 """store_indices(wave, array, first): the same for indices that the wave holds as floats."""
 
-gather = _gather if _PLAIN else _gather_scalars
+gather = emitted(_gather, _gather_scalars)
 """gather(texels, indices, wave): read the elements that the lanes of `indices` (int32, none negative) name."""
 
-smallest = _smallest if _PLAIN else _smallest_of_vector
+smallest = emitted(_smallest, _smallest_of_vector)
 """smallest(wave): the smallest of its lanes."""
 
-largest = _largest if _PLAIN else _largest_of_vector
+largest = emitted(_largest, _largest_of_vector)
 """largest(wave): the largest of its lanes."""
