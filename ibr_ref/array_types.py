@@ -1,6 +1,8 @@
-"""Names for the arrays of annotations, by what they hold."""
+"""Names for the arrays of annotations, by what they hold, and for what compiled functions hand on as scalars."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,3 +21,11 @@ Lanes = NDArray[np.float64]
 """(LANES,): one number for each fragment of a wave."""
 Wrap = bool | None
 """Of a texture: None clamps, True repeats; a type to the compiler, which leaves the other way out."""
+
+Vector3 = tuple[float, float, float]
+"""A point, a direction or a colour as scalars: compiled code keeps no small arrays."""
+Vector4 = tuple[float, float, float, float]
+"""A homogeneous point or direction, or a row of a (4, 4) matrix."""
+
+Whole = Any
+"""An integer that NumPy makes. To mypy it is no int, nor is what is reckoned with it."""
