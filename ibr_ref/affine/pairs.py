@@ -1,7 +1,8 @@
 """Operations on two numbers.
 
 a, b: (3 + K', n) rows, or (3 + K', 1) of a number that is the same everywhere. at_a, at_b: (K,) for each symbol of the
-result the row of its slope in a and in b, -1 where it has none. units: of the rounding, or EXACT. Returns (3 + K, n).
+result the row of its slope in a and in b, -1 where it has none. units: of the rounding, or EXACT. result, and what is
+returned: (3 + K, n). total: (3 + K, n) a sum, of terms whose sizes are added up in size (n,).
 """
 
 from __future__ import annotations
@@ -141,7 +142,7 @@ def either(a: Floats, b: Floats, at_a: Ints, at_b: Ints) -> Floats:
 def add_product(
     total: Floats, size: Floats, a: Floats, b: Floats, at_a: Ints, at_b: Ints, units: float, term: Floats
 ) -> None:
-    """A b more in a sum, total (3 + K, n); size (n,): of its terms. term: (3 + K, n) room."""
+    """A b more in a sum. term: (3 + K, n) room."""
     _multiply(a, b, at_a, at_b, units, term)
     _gather(total, size, term, np.arange(SLOPES, len(term)))
 

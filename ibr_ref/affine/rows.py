@@ -1,4 +1,7 @@
-"""What rows of a number are, and what is done with those of one number."""
+"""What rows of a number are, and what is done with those of one number.
+
+number: (3 + K, n) of n elements their values, errors, deviations, and their slopes along K symbols.
+"""
 
 from __future__ import annotations
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
+from ibr_ref.array_types import Floats, Indices, Texels
 from ibr_ref.jit import device, kernel, prange
 
 
 @device
-def _sum(texture: Any, indices: Any, first: int, last: int) -> Any:
+def _sum(texture: Texels, indices: Indices, first: int, last: int) -> float:
     a = b = c = d = 0.0  # four sums: additions that wait for each other would be what is measured
     for i in range(first, last - 3, 4):
         a += texture[indices[i]]
@@ -19,8 +18,8 @@ def _sum(texture: Any, indices: Any, first: int, last: int) -> Any:
 
 
 @kernel
-def gather_sums(texture: Any, indices: Any, sums: Any) -> None:
-    """Sum, in as many parts as `sums` has, of the texels that the indices name."""
+def gather_sums(texture: Texels, indices: Indices, sums: Floats) -> None:
+    """Sum, in as many parts as sums (S,) has, of the texels that the indices (N,) name."""
     parts = len(sums)
     for part in prange(parts):
         sums[part] = _sum(texture, indices, len(indices) * part // parts, len(indices) * (part + 1) // parts)

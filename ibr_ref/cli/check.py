@@ -12,6 +12,7 @@ import typer
 
 from ibr_ref import methods
 from ibr_ref.cli import json_output
+from ibr_ref.cli.groups import grouped
 from ibr_ref.cli.judging import Finding, Judging, lines, worst
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.progress import progress
@@ -44,16 +45,28 @@ POLL = 0.3
 """Seconds between two looks at the files that are watched."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Outputs:
-    """Where verdicts go besides the words."""
+    """Options: where verdicts go besides the words."""
 
-    json: Path | None
-    report: Path | None
-    junit: Path | None
+    json: Annotated[
+        Path | None,
+        typer.Option(
+            help="Also write the verdict, of many a list, or --self-test's tables, as JSON; -: on standard output."
+        ),
+    ] = None
+    report: Annotated[
+        Path | None,
+        typer.Option(
+            help="Also write it as one HTML page, with pictures; of many a folder of them, with an index.html."
+        ),
+    ] = None
+    junit: Annotated[Path | None, typer.Option(help="Also write it as JUnit XML.")] = None
 
 
+@grouped
 def command(
+    *,
     case: Annotated[
         str | None,
         typer.Argument(
@@ -76,19 +89,7 @@ def command(
             "Without: port.json's, or the tightest that explains all."
         ),
     ] = None,
-    json: Annotated[
-        Path | None,
-        typer.Option(
-            help="Also write the verdict, of many a list, or --self-test's tables, as JSON; -: on standard output."
-        ),
-    ] = None,
-    report: Annotated[
-        Path | None,
-        typer.Option(
-            help="Also write it as one HTML page, with pictures; of many a folder of them, with an index.html."
-        ),
-    ] = None,
-    junit: Annotated[Path | None, typer.Option(help="Also write it as JUnit XML.")] = None,
+    outputs: Outputs,
     watch: Annotated[
         bool, typer.Option("--watch", help="Check again whenever files of the case or the port change, until Ctrl-C.")
     ] = False,
@@ -107,11 +108,10 @@ def command(
     if self_test:
         from ibr_ref.cli.self_test import run, run_coarse
 
-        raise typer.Exit((run_coarse if coarse else run)(method, json))
+        raise typer.Exit((run_coarse if coarse else run)(method, outputs.json))
     if case is None or port is None:
         raise typer.BadParameter("found too few folders, allowed: CASE and PORT, or --self-test")
     judging = Judging(case, port, device)
-    outputs = Outputs(json, report, junit)
     _check_writable(outputs, many=judging.many)
     raise typer.Exit(_watched(judging, outputs, fail_fast) if watch else _checked(judging, outputs, fail_fast))
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from ibr_ref.cli import options
+from ibr_ref.cli.groups import told
 
 
 class Format(StrEnum):
@@ -55,39 +57,55 @@ class PixelCenters(StrEnum):
 Rgbd = Annotated[
     Path | None, typer.Option(help="A folder of pictures with depth, intrinsics and poses: what `--format` lists.")
 ]
-OfFormat = Annotated[
-    Format,
-    typer.Option("--format", help="--rgbd: its form (README.md in ibr_ref/io has a table); auto: told by its files."),
-]
-DepthScale = Annotated[
-    float | None,
-    typer.Option(
-        parser=options.number,
-        help="--rgbd: world units of a stored one, such as 0.001. Without, as with the next ones: what the format "
-        "says, or an error where it leaves that open.",
-    ),
-]
-OfConvention = Annotated[
-    Convention | None,
-    typer.Option(help="--rgbd: axes of cameras; opencv: +y down, looking down +z; opengl: +y up, looking down -z."),
-]
-OfPoses = Annotated[Poses | None, typer.Option(help="--rgbd: what the poses take to what.")]
-OfAlong = Annotated[
-    Along | None, typer.Option(help="--rgbd: depths along the axis of view, or along the ray from the eye.")
-]
-OfPixelCenters = Annotated[
-    PixelCenters | None, typer.Option(help="--rgbd: at which places the intrinsics have the centres of pixels.")
-]
-Intrinsics = Annotated[
-    options.Numbers | None,
-    typer.Option(
-        parser=options.intrinsics, metavar="FX,FY,CX,CY", help="--rgbd: pixels, of pictures whose files have none."
-    ),
-]
-MaxTimeGap = Annotated[
-    float | None,
-    typer.Option(parser=options.number, help="--rgbd: seconds, of what belongs together. Without: 0.02."),
-]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Set:
+    """Options: a set that is read, and what its files leave open."""
+
+    rgbd: Rgbd = None
+    format_: Annotated[
+        Format,
+        typer.Option(
+            "--format", help="--rgbd: its form (README.md in ibr_ref/io has a table); auto: told by its files."
+        ),
+    ] = Format.auto
+    depth_scale: Annotated[
+        float | None,
+        typer.Option(
+            parser=options.number,
+            help="--rgbd: world units of a stored one, such as 0.001. Without, as with the next ones: what the format "
+            "says, or an error where it leaves that open.",
+        ),
+    ] = None
+    convention: Annotated[
+        Convention | None,
+        typer.Option(help="--rgbd: axes of cameras; opencv: +y down, looking down +z; opengl: +y up, looking down -z."),
+    ] = None
+    poses: Annotated[Poses | None, typer.Option(help="--rgbd: what the poses take to what.")] = None
+    along: Annotated[
+        Along | None, typer.Option(help="--rgbd: depths along the axis of view, or along the ray from the eye.")
+    ] = None
+    pixel_centers: Annotated[
+        PixelCenters | None, typer.Option(help="--rgbd: at which places the intrinsics have the centres of pixels.")
+    ] = None
+    intrinsics: Annotated[
+        options.Numbers | None,
+        typer.Option(
+            parser=options.intrinsics, metavar="FX,FY,CX,CY", help="--rgbd: pixels, of pictures whose files have none."
+        ),
+    ] = None
+    max_time_gap: Annotated[
+        float | None,
+        typer.Option(parser=options.number, help="--rgbd: seconds, of what belongs together. Without: 0.02."),
+    ] = None
+
+    def says(self) -> dict[str, Any]:
+        """The format, and the options of `io.read_depth_set`."""
+        chosen = None if self.format_ is Format.auto else self.format_.value
+        return {"format": chosen, **told(self, "rgbd", "format_")}
+
+
 Pose = Annotated[
     options.Numbers | None,
     typer.Option(

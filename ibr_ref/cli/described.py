@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from inspect import Parameter, Signature, signature
+from inspect import Parameter, signature
 from typing import Any, NamedTuple, TypeVar
+
+from ibr_ref.cli.groups import grouped, signed
 
 Made = TypeVar("Made")
 
@@ -26,25 +28,23 @@ class Described(NamedTuple):
 def beside(read: Callable[..., Any]) -> Callable[[Callable[..., Made]], Callable[..., Made]]:
     """A decorator for a command that hands on to `read` whatever options it has not itself: it gets both, its own first.
 
-    What `read` takes by keyword alone is no option.
+    What `read` takes by keyword alone is no option. The command may take options in groups; where `read` does, it says so.
     """
 
     def decorate(command: Callable[..., Made]) -> Callable[..., Made]:
+        own = grouped(command)
+
         @wraps(command)
         def both(*arguments: Any, **options: Any) -> Made:
-            return command(*arguments, **options)
+            return own(*arguments, **options)
 
-        parameters = [*_own(command), *_own(read)]
-        required = [p for p in parameters if p.default is Parameter.empty]
-        optional = [p for p in parameters if p.default is not Parameter.empty]
-        both.__signature__ = Signature(required + optional)  # type: ignore[attr-defined]
-        both.__annotations__ = {p.name: p.annotation for p in required + optional}
-        return both
+        mine = [p for p in _named(own) if p.kind is not Parameter.VAR_KEYWORD]
+        others = [p for p in _named(read) if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
+        return signed(both, [p.replace(kind=Parameter.POSITIONAL_OR_KEYWORD) for p in (*mine, *others)])
 
     return decorate
 
 
-def _own(function: Callable[..., Any]) -> list[Parameter]:
-    """Parameters with a name, and their annotations as what they say."""
-    found = signature(function, eval_str=True).parameters.values()
-    return [parameter for parameter in found if parameter.kind is Parameter.POSITIONAL_OR_KEYWORD]
+def _named(function: Callable[..., Any]) -> list[Parameter]:
+    """Parameters, and their annotations as what they say."""
+    return list(signature(function, eval_str=True).parameters.values())

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from inspect import signature
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ibr_ref.cli import base_polygon, depth_set_options, emptiness, options, own_case, pictures
 from ibr_ref.cli.described import Described, beside
+from ibr_ref.cli.groups import grouped, told
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 from ibr_ref.methods import named
 from ibr_ref.progress import progress
@@ -33,6 +34,9 @@ Examples:
 
 
 if TYPE_CHECKING:
+    from ibr_ref.displacement import Params
+    from ibr_ref.scene import BasePolygon, Camera
+
     Method = str
 else:
     Method = options.choices("Method", SEARCHES, "Search for the hit.")
@@ -46,21 +50,6 @@ class Interval(StrEnum):
     volume = "volume"
 
 
-class HeightFormat(StrEnum):
-    """Of a height file that does not say it."""
-
-    hgt = "hgt"
-    raw = "raw"
-    terrarium = "terrarium"
-
-
-class ByteOrder(StrEnum):
-    """Of raw samples."""
-
-    little = "little"
-    big = "big"
-
-
 class FaceSet(StrEnum):
     """Faces of the volume that are drawn."""
 
@@ -69,210 +58,118 @@ class FaceSet(StrEnum):
     extended = "extended"
 
 
-def read(
-    height: Annotated[
-        Path | None,
-        typer.Option(help="Height map, white is high: PNG, JPEG, TIFF, GeoTIFF, EXR, PFM, .hgt, .raw, .r16, .r32."),
-    ] = None,
-    height_format: Annotated[
-        HeightFormat | None, typer.Option(help="Of a file that does not say it. Without: content, .hgt, .raw.")
-    ] = None,
-    height_size: Annotated[
-        options.Size | None,
-        typer.Option(
-            parser=options.size, metavar="WxH", help="Samples of a raw file: of 1, 2 (unsigned) or 4 bytes (float)."
-        ),
-    ] = None,
-    height_order: Annotated[ByteOrder | None, typer.Option(help="Byte order of a raw file. Without: little.")] = None,
-    height_range: Annotated[
-        options.Pair | None,
-        typer.Option(
-            parser=options.pair,
-            metavar="LOW,HIGH",
-            help="Heights that become 0 and 1, in the file's numbers. Without: all that unsigned integers can say; others "
-            "must lie in [0, 1].",
-        ),
-    ] = None,
-    nodata: Annotated[
-        float | None,
-        typer.Option(parser=options.number, help="Number that stands for no height. Without: the file's own."),
-    ] = None,
-    fill: Annotated[
-        float | None, typer.Option(parser=options.number, help="Height given to where there is none; without, refused.")
-    ] = None,
-    normal_height: Annotated[
-        Path | None,
-        typer.Option(help="Instead of --height and --normal: RGBA, the normal in RGB, the height in alpha."),
-    ] = None,
-    color: base_polygon.Color = None,
-    normal: base_polygon.Normal = None,
-    facade: base_polygon.Facade = None,
-    facade_tile: base_polygon.FacadeTile = base_polygon.TILE,
-    invert_height: base_polygon.InvertHeight = False,
-    no_exif: Annotated[
-        bool, typer.Option("--no-exif", help="Keep the rows as stored: do not turn images as their Exif tags say.")
-    ] = False,
-    height_scale: Annotated[
-        float | None,
-        typer.Option(
-            parser=options.number,
-            help="Height of white, world units; the map's longer side is 1. With --texel-size: in the map's own units. "
-            "Without: 0.15, or the true proportions where the size of a texel is known.",
-        ),
-    ] = None,
-    texel_size: Annotated[
-        options.Pair | None,
-        typer.Option(
-            parser=options.one_or_two,
-            metavar="A[,B]",
-            help="Width (and height) of a texel in the units of the heights. Without: what a GeoTIFF or .hgt says.",
-        ),
-    ] = None,
+@dataclass(frozen=True, kw_only=True)
+class View:
+    """Options: the camera and the light."""
+
     eye: Annotated[
         options.Vector,
         typer.Option(
             parser=options.vector, metavar="X,Y,Z", help="The eye; z is up, the map is centred at the origin."
         ),
-    ] = options.Vector(0.6, -1.25, 0.95),
+    ] = options.Vector(0.6, -1.25, 0.95)
     target: Annotated[
         options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="The point looked at.")
-    ] = options.Vector(0, 0, 0),
-    fov: Annotated[float, typer.Option(parser=options.number, help="Vertical field of view, degrees.")] = 45.0,
-    near: options.Near = None,
-    far: options.Far = None,
-    light: base_polygon.LightDirection = base_polygon.LIGHT,
-    size: Annotated[
-        options.Size, typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture.")
-    ] = options.Size(640, 480),
-    steps: Annotated[int, typer.Option(parser=options.whole, help="N, steps of the linear search.")] = 10,
-    binary_steps: Annotated[int, typer.Option(parser=options.whole, help="M, steps of the binary search.")] = 6,
+    ] = options.Vector(0, 0, 0)
+    fov: Annotated[float, typer.Option(parser=options.number, help="Vertical field of view, degrees.")] = 45.0
+    near: options.Near = None
+    far: options.Far = None
+    light: base_polygon.LightDirection = base_polygon.LIGHT
+    size: Annotated[options.Size, typer.Option(parser=options.size, metavar="WxH", help="Pixels of the picture.")] = (
+        options.Size(640, 480)
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Search:
+    """Options: the fields of Params, two of them under shorter names."""
+
+    steps: Annotated[int, typer.Option(parser=options.whole, help="N, steps of the linear search.")] = 10
+    binary_steps: Annotated[int, typer.Option(parser=options.whole, help="M, steps of the binary search.")] = 6
     delta: Annotated[
         float,
         typer.Option(parser=options.number, help="--facade: threshold of a steep wall, in units of the height."),
-    ] = 0.1,
+    ] = 0.1
     shadow_steps: Annotated[
         int, typer.Option(parser=options.whole, help="Samples towards the light; 0: no self-shadow.")
-    ] = 0,
-    interval: Annotated[Interval, typer.Option(help="Stretch of the view ray that is searched.")] = Interval.paper,
-    faces: Annotated[FaceSet, typer.Option(help="Faces of the volume that are drawn.")] = FaceSet.auxiliary,
+    ] = 0
+    interval: Annotated[Interval, typer.Option(help="Stretch of the view ray that is searched.")] = Interval.paper
+    faces: Annotated[FaceSet, typer.Option(help="Faces of the volume that are drawn.")] = FaceSet.auxiliary
     method: Annotated[
         Method, typer.Option(help="Search for the hit; from relief on, systems to compare with: shapes sink, not rise.")
-    ] = PROTRUDED,
+    ] = PROTRUDED
     lod_bias: Annotated[
         float, typer.Option(parser=options.number, help="mcguire: level of the mip chain that heights come from.")
-    ] = 1.0,
+    ] = 1.0
     min_steps: Annotated[
         int, typer.Option(parser=options.whole, help="tatarchuk: steps where the view is straight down.")
-    ] = 8,
+    ] = 8
     max_steps: Annotated[
         int, typer.Option(parser=options.whole, help="tatarchuk: steps where the view is horizontal.")
-    ] = 50,
+    ] = 50
     distance_layers: Annotated[
         int, typer.Option(parser=options.whole, help="donnelly: layers of the distance texture.")
-    ] = 32,
-) -> Described:
+    ] = 32
+
+
+@grouped
+def read(maps: base_polygon.Maps, view: View, search: Search) -> Described:
     """What the options describe. Raises ValueError and OSError for maps and numbers that make no scene."""
     from ibr_ref import displacement
-    from ibr_ref.scene import Camera, Light
+    from ibr_ref.scene import Light
 
-    heights, normals = base_polygon.read_maps(
-        height,
-        normal_height,
-        normal,
-        invert_height=invert_height,
-        exif=not no_exif,
-        kind=height_format and height_format.value,
-        size=height_size,
-        order=height_order and height_order.value,
-        height_range=height_range,
-        nodata=nodata,
-        fill=fill,
-    )
-    polygon = base_polygon.polygon(
-        heights,
-        normals,
-        color,
-        facade,
-        proportions=heights.proportions(height_scale, texel_size),
-        facade_tile=facade_tile,
-        exif=not no_exif,
-    )
-    del heights
-    params = displacement.Params(
-        linear_steps=steps,
-        binary_steps=binary_steps,
-        steep_threshold=delta,
-        shadow_steps=shadow_steps,
-        interval=interval.value,
-        faces=faces.value,
-        method=str(method),
-        lod_bias=lod_bias,
-        min_steps=min_steps,
-        max_steps=max_steps,
-        distance_layers=distance_layers,
-    )
-    view = Camera.look_at(
-        eye=eye, target=target, up=options.up(eye, target), vertical_fov=fov, width=size.width, height=size.height
-    )
+    polygon = base_polygon.polygon(maps)
+    others = told(search, "steps", "delta")
+    params = displacement.Params(linear_steps=search.steps, steep_threshold=search.delta, **others)
     scene = displacement.Scene(
         polygons=[polygon],
-        camera=view.fitted(displacement.bounding_points([polygon], view, params), near=near, far=far),
-        light=Light(direction=light),
+        camera=_camera(polygon, params, view),
+        light=Light(direction=view.light),
         background=(1.0, 1.0, 1.0),
     )
     return Described(scene, params, {})
 
 
+def _camera(polygon: BasePolygon, params: Params, view: View) -> Camera:
+    """The view's, with planes around all that there is, or where they are given."""
+    from ibr_ref import displacement
+    from ibr_ref.scene import Camera
+
+    up, (width, height) = options.up(view.eye, view.target), view.size
+    camera = Camera.look_at(eye=view.eye, target=view.target, up=up, vertical_fov=view.fov, width=width, height=height)
+    return camera.fitted(displacement.bounding_points([polygon], camera, params), near=view.near, far=view.far)
+
+
 @beside(read)
 def command(
-    out: options.Out,
-    path: pictures.CameraPath = None,
-    frames: pictures.Frames = 120,
-    video: pictures.Video = None,
-    fps: pictures.Fps = 30.0,
-    scheduler: pictures.Scheduler = None,
+    *,
+    picture: pictures.Picture,
     depth_set: depth_set_options.OneDepthImage = None,
-    bits: options.Bits = 8,
-    stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
-    case: own_case.Folder = None,
+    kept: pictures.Kept,
     **described: Any,
 ) -> None:
     """Protruded displacement mapping (Yoo & Han 2006) of a height map and a colour map."""
-    whole = {"stages": stages, "depth_set": depth_set}
-    wanted = pictures.Wanted(
-        out=out,
-        bits=bits,
-        path=path,
-        frames=frames,
-        video=video,
-        fps=fps,
-        scheduler=scheduler,
-        fov=described["fov"],
-        whole=whole,
-    )
+    wanted = pictures.Wanted(picture, kept, fov=described["fov"], whole={"depth_set": depth_set})
     with progress(3) as step:
         step("reading maps")
-        from ibr_ref import displacement, io
+        from ibr_ref import displacement
 
-        wanted.check(*described["size"])
-        own_case.check_writable(case)
-        if stages is not None:
-            io.check_writable(stages)
+        wanted.check(described["size"])
         scene, params, *_ = read(**described)
         near, far = described["near"], described["far"]
         shown, frame = pictures.draw(
             wanted,
             scene,
             params,
-            lambda scene, **rows: displacement.render(scene, params, stages=stages is not None, **rows),
+            lambda scene, **rows: displacement.render(scene, params, stages=kept.stages is not None, **rows),
             lambda camera: camera.fitted(
                 displacement.bounding_points(scene.polygons, camera, params), near=near, far=far
             ),
             step,
         )
         if frame is not None:
-            pictures.write(wanted, frame, step, stages=stages, depth_set=depth_set, camera=scene.camera)
-    own_case.write(case, scene, params)
+            pictures.write(wanted, frame, step, depth_set=depth_set, camera=scene.camera)
+    own_case.write(kept.case, scene, params)
     emptiness.say(shown, lambda: displacement.culled(scene, params))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,6 +11,7 @@ import typer
 
 from ibr_ref.cli import depth_set_options, emptiness, options, own_case, pictures, splatting_sources
 from ibr_ref.cli.described import Described, beside
+from ibr_ref.cli.groups import grouped, told
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 from ibr_ref.methods import named
 from ibr_ref.progress import progress
@@ -53,103 +55,50 @@ class Method(StrEnum):
     software = "software"
 
 
-def read(
-    msr: Annotated[Path | None, typer.Option(help="A folder of MSR 3D Video (calibParams-*.txt, images).")] = None,
-    rgbd: depth_set_options.Rgbd = None,
-    format_: depth_set_options.OfFormat = depth_set_options.Format.auto,
-    depth_scale: depth_set_options.DepthScale = None,
-    convention: depth_set_options.OfConvention = None,
-    poses: depth_set_options.OfPoses = None,
-    along: depth_set_options.OfAlong = None,
-    pixel_centers: depth_set_options.OfPixelCenters = None,
-    intrinsics: depth_set_options.Intrinsics = None,
-    max_time_gap: depth_set_options.MaxTimeGap = None,
-    cameras: Annotated[
-        options.Cameras,
-        typer.Option(
-            parser=options.cameras, metavar="I,J,..|all", help="--msr, --rgbd: the cameras that are references."
-        ),
-    ] = options.Cameras((0,)),
-    view: Annotated[
-        options.View | None,
-        typer.Option(
-            parser=options.view,
-            metavar="I|I:J|I:J:F",
-            help="--msr, --rgbd: seen from camera I, or between I and J (midway, or at F of 1).",
-        ),
-    ] = None,
-    pose: depth_set_options.Pose = None,
-    frame: Annotated[int, typer.Option(parser=options.whole, help="--msr: number of the frame.")] = 0,
-    near: Annotated[
-        float | None,
-        typer.Option(
-            parser=options.number,
-            help="Distance of the near plane, which is before all points without; --msr: Z of the depth code 255, known for "
-            "two sequences.",
-        ),
-    ] = None,
-    far: Annotated[
-        float | None,
-        typer.Option(parser=options.number, help="Distance of the far plane likewise; --msr: Z of the depth code 0."),
-    ] = None,
-    simple_texture: Annotated[Path | None, typer.Option(help="A SimpleTexture file (XMT-A).")] = None,
-    mesh: Annotated[Path | None, typer.Option(help="A mesh, of which reference images are made.")] = None,
-    count: Annotated[int, typer.Option(parser=options.whole, help="--mesh: 4, 9, 16 or 32 reference images.")] = 9,
-    reference_size: Annotated[
-        int, typer.Option(parser=options.whole, help="--mesh: pixels a side of a reference image.")
-    ] = 320,
-    eye: Annotated[
-        options.Vector | None,
-        typer.Option(parser=options.vector, metavar="X,Y,Z", help="The eye. Without: obliquely from the front."),
-    ] = None,
-    target: Annotated[
-        options.Vector | None,
-        typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point looked at. Without: the middle."),
-    ] = None,
-    up: Annotated[
-        options.Vector,
-        typer.Option(parser=options.vector, metavar="X,Y,Z", help="The direction that is up in the picture."),
-    ] = options.Vector(0, 0, 1),
-    fov: Annotated[float, typer.Option(parser=options.number, help="Vertical field of view, degrees.")] = 45.0,
-    size: Annotated[
-        options.Size,
-        typer.Option(
-            parser=options.size, metavar="WxH", help="Pixels of the picture; a camera of a data set has its own."
-        ),
-    ] = options.Size(640, 480),
+@dataclass(frozen=True, kw_only=True)
+class Splats:
+    """Options: the fields of Params, the law's four numbers as one."""
+
     law: Annotated[
         options.Law | None,
         typer.Option(parser=options.law, metavar="A,B,C,D", help="W = A/(B d^2 + C d + D) pixels at the distance d."),
-    ] = None,
-    fit: Annotated[
-        bool, typer.Option("--fit", help="Fit the law to the references and the view (the default).")
-    ] = False,
-    min_width: Annotated[float, typer.Option(parser=options.number, help="Least width of a splat, pixels.")] = 1.0,
-    max_width: Annotated[float, typer.Option(parser=options.number, help="Largest width of a splat, pixels.")] = 64.0,
+    ] = None
+    fit: Annotated[bool, typer.Option("--fit", help="Fit the law to the references and the view (the default).")] = (
+        False
+    )
+    min_width: Annotated[float, typer.Option(parser=options.number, help="Least width of a splat, pixels.")] = 1.0
+    max_width: Annotated[float, typer.Option(parser=options.number, help="Largest width of a splat, pixels.")] = 64.0
     shape: Annotated[
         Shape,
         typer.Option(help="Shape of a splat; ellipse: elliptical weighted averages (Zwicker et al. 2001), no law."),
-    ] = Shape.square,
+    ] = Shape.square
     footprint: Annotated[
         float,
         typer.Option(parser=options.number, help="--shape ellipse: deviation of a point's Gaussian, reference pixels."),
-    ] = 0.5,
+    ] = 0.5
     low_pass: Annotated[
         float,
         typer.Option(parser=options.number, help="--shape ellipse: deviation of the filter, pixels of the picture."),
-    ] = 0.5,
+    ] = 0.5
     cutoff: Annotated[
         float, typer.Option(parser=options.number, help="--shape ellipse: where Gaussians end, deviations.")
-    ] = 2.0,
+    ] = 2.0
     depth_tolerance: Annotated[
         float,
         typer.Option(
             parser=options.number, help="--shape ellipse: what is averaged with the nearest, share of the distance."
         ),
-    ] = 0.01,
+    ] = 0.01
     method: Annotated[
         Method, typer.Option(help="software: the paper's comparison, a loop on one thread; the same picture.")
-    ] = Method.shader,
+    ] = Method.shader
+
+
+@grouped
+def read(
+    sources: splatting_sources.Sources,
+    seen: splatting_sources.Seen,
+    splats: Splats,
     light: Annotated[
         options.Vector | None,
         typer.Option(
@@ -163,132 +112,82 @@ def read(
 
     Raises ValueError and OSError for references and numbers that make no scene.
     """
-    splatting_sources.check(msr, rgbd, simple_texture, mesh, cameras, view, pose, eye, path)
+    splatting_sources.check(sources, seen, path)
     from ibr_ref import splatting
     from ibr_ref.scene import Light
 
-    camera, photograph = None, splatting_sources.no_photograph
-    if msr is not None:
-        assert view is not None
-        images, camera, photograph = splatting_sources.from_msr(msr, cameras, view, frame, near, far)
-    elif rgbd is not None:
-        images, camera, photograph = splatting_sources.from_rgbd(
-            rgbd,
-            cameras,
-            view,
-            pose,
-            (near, far),
-            format=None if format_.value == "auto" else format_.value,
-            depth_scale=depth_scale,
-            convention=convention,
-            poses=poses,
-            along=along,
-            pixel_centers=pixel_centers,
-            intrinsics=intrinsics,
-            max_time_gap=max_time_gap,
-        )
-    else:
-        images = splatting_sources.of_file(simple_texture, mesh, count, reference_size)
+    images, camera, photograph = splatting_sources.references(sources)
     if camera is None:
-        camera = splatting_sources.view_of(images, eye, target, up, fov, size, near, far)
+        camera = splatting_sources.view_of(images, seen, sources.near, sources.far)
     scene = splatting.Scene(
         images=images,
         camera=camera,
         light=None if light is None else Light(direction=light),
-        background=(1.0, 1.0, 1.0) if msr is None and rgbd is None else (0.0, 0.0, 0.0),
+        background=(1.0, 1.0, 1.0) if sources.msr is None and sources.files.rgbd is None else (0.0, 0.0, 0.0),
     )
-    params = _params(
-        scene,
-        law,
-        min_width=min_width,
-        max_width=max_width,
-        shape=shape.value,
-        footprint=footprint,
-        low_pass=low_pass,
-        cutoff=cutoff,
-        depth_tolerance=depth_tolerance,
-        method=method.value,
-    )
-    return Described(scene, params, {}, photograph)
+    return Described(scene, _params(scene, splats), {}, photograph)
 
 
 @beside(read)
 def command(
-    out: options.Out,
+    *,
     report: Annotated[
         bool, typer.Option("--report", help="Print coverage, holes, overdraw, and the difference to the photograph.")
     ] = False,
-    path: pictures.CameraPath = None,
-    frames: pictures.Frames = 120,
-    video: pictures.Video = None,
-    fps: pictures.Fps = 30.0,
-    scheduler: pictures.Scheduler = None,
+    picture: pictures.Picture,
     depth_set: depth_set_options.DepthSet = None,
     point_cloud: depth_set_options.PointCloud = None,
-    bits: options.Bits = 8,
-    stages: Annotated[Path | None, typer.Option(help="Also write every stage array, as .npz.")] = None,
-    case: own_case.Folder = None,
+    kept: pictures.Kept,
     **described: Any,
 ) -> None:
     """Splatting of reference images with depth (Lee & Park 2006) from a new view: of photographs, files, or a mesh."""
-    whole = {"stages": stages, "report": report}
-    wanted = pictures.Wanted(
-        out=out,
-        bits=bits,
-        path=path,
-        frames=frames,
-        video=video,
-        fps=fps,
-        scheduler=scheduler,
-        fov=described["fov"],
-        whole=whole,
-    )
+    wanted = pictures.Wanted(picture, kept, fov=described["fov"], whole={"report": report})
     with progress(3) as step:
         step("reading references")
         from ibr_ref import io, splatting
 
-        wanted.check(*described["size"])
-        own_case.check_writable(case)
-        for file in (stages, point_cloud):
-            if file is not None:
-                io.check_writable(file)
-        scene, params, _, read_photograph = read(**described, path=path)
+        wanted.check(described["size"])
+        if point_cloud is not None:
+            io.check_writable(point_cloud)
+        scene, params, _, read_photograph = read(**described, path=picture.path)
         photograph = read_photograph() if report else None
         if depth_set is not None:
-            io.write_depth_set(depth_set, scene.images, bits=bits)
+            io.write_depth_set(depth_set, scene.images, bits=kept.bits)
         if point_cloud is not None:
             io.write_point_cloud(point_cloud, scene.images)
-        near, far = described["near"], described["far"]
-        shown, picture = pictures.draw(
+        keep, near, far = report or kept.stages is not None, described["near"], described["far"]
+        shown, frame = pictures.draw(
             wanted,
             scene,
             params,
-            lambda scene, **rows: splatting.render(scene, params, stages=report or stages is not None, **rows),
+            lambda scene, **rows: splatting.render(scene, params, stages=keep, **rows),
             lambda camera: splatting_sources.fitted(scene.images, camera, near, far),
             step,
         )
-        if picture is not None:
-            pictures.write(wanted, picture, step, stages=stages)
-    own_case.write(case, scene, params)
+        if frame is not None:
+            pictures.write(wanted, frame, step)
+    own_case.write(kept.case, scene, params)
     emptiness.say(shown, lambda: splatting.culled(scene, params))
-    if picture is not None and report:
+    if frame is not None and report:
         from ibr_ref.cli.splatting_report import report_lines
 
-        typer.echo("\n".join(report_lines(scene, params, picture, photograph)))
+        typer.echo("\n".join(report_lines(scene, params, frame, photograph)))
 
 
-def _params(scene: Scene, law: options.Law | None, **rest: Any) -> Params:
+def _params(scene: Scene, splats: Splats) -> Params:
     """The parameters, with the law that is given or fitted; ellipses have none, and where no point is in view none fits."""
     from ibr_ref import splatting
 
+    rest = told(splats, "law", "fit")
     plain = splatting.Params(**rest)  # what is wrong with these is said before the fit, which takes its time
-    if law is not None:
-        return splatting.Params(**law._asdict(), **rest)
+    if splats.law is not None:
+        return splatting.Params(**splats.law._asdict(), **rest)
     if plain.shape == "ellipse":
         return plain
-    widths = {name: rest[name] for name in ("min_width", "max_width")}
     try:
-        fitted = splatting.fit_splat_law(scene.images, scene.camera, **widths)
+        fitted = splatting.fit_splat_law(
+            scene.images, scene.camera, min_width=splats.min_width, max_width=splats.max_width
+        )
     except ValueError:
         if splatting.culled(scene, plain).drawn:
             raise

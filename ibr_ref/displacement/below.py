@@ -2,25 +2,26 @@
 
 Their polygon is the *top* of the volume. With D = 1 - H and the fragment's point C, the view ray at depth d is
 q(d) = C_uv - d (v_uv / v_h), v = e - C. Samples beside a map that does not repeat are empty: a ray that leaves the map
-before it meets the surface is discarded (the gaps of the paper's figure 3). Results are kept one a pixel, as a polygon's
-base face covers each pixel at most once.
+before it meets the surface is discarded (the gaps of the paper's figure 3).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ibr_ref.array_types import Floats, Lanes, Whole
+from ibr_ref.displacement.buffers import Hits, Uniforms
 from ibr_ref.jit import LANES, device
 
 
 @device
-def in_domain(u, v, bounded):
+def in_domain(u: float, v: float, bounded: bool) -> bool:
     """Whether there is a map at (u, v)."""
     return not bounded or (0.0 <= u <= 1.0 and 0.0 <= v <= 1.0)
 
 
 @device
-def sampled(height, bounded, u, v, d):
+def sampled(height: float, bounded: bool, u: float, v: float, d: float) -> tuple[bool, float, float]:
     """Of a height that was fetched at (u, v), wherever that is: whether the sample is at or below the surface.
 
     And its margin |d - D|, infinite at d = 0 and d = 1; H, 0 outside.
@@ -32,7 +33,7 @@ def sampled(height, bounded, u, v, d):
 
 
 @device
-def border(u, v, bounded, nearest):
+def border(u: float, v: float, bounded: bool, nearest: float) -> float:
     """The smaller of `nearest` and the distance in (u, v) from the border of a map that ends there."""
     if not bounded:
         return nearest
@@ -40,23 +41,25 @@ def border(u, v, bounded, nearest):
 
 
 @device
-def view_ray(points, pixel, eye):
+def view_ray(points: Floats, i: int, eye: Floats) -> tuple[float, float, float, float, bool]:
     """(u, v) on the polygon, v_u / v_h and v_v / v_h, and whether there is a ray: a fragment, and an eye above."""
-    u, v = points[0, pixel], points[1, pixel]
-    to_h = eye[2] - eye[3] * points[2, pixel]
+    u, v = points[0, i], points[1, i]
+    to_h = eye[2] - eye[3] * points[2, i]
     if not to_h > 0.0:
         return u, v, 0.0, 0.0, False
     return u, v, (eye[0] - eye[3] * u) / to_h, (eye[1] - eye[3] * v) / to_h, True
 
 
 @device
-def view_rays(points, first, eye, u, v, along_u, along_v):
-    """The same for a wave of pixels from `first` on: how many of them there are, and whether there is any ray.
+def view_rays(
+    points: Floats, first: int, eye: Floats, u: Lanes, v: Lanes, along_u: Lanes, along_v: Lanes
+) -> tuple[int, bool]:
+    """The same for a wave of points from `first` on: how many of them there are, and whether there is any ray.
 
     NaN where there is none, as the wave's rest has.
     """
-    pixels = points.shape[1]
-    count, seen = min(LANES, pixels - first), False
+    last = points.shape[1]
+    count, seen = min(LANES, last - first), False
     for lane in range(LANES):
         u[lane] = v[lane] = along_u[lane] = along_v[lane] = np.nan
     for lane in range(count):
@@ -68,7 +71,7 @@ def view_rays(points, first, eye, u, v, along_u, along_v):
 
 
 @device
-def distance_to_eye(constants, along_u, along_v):
+def distance_to_eye(constants: Uniforms, along_u: float, along_v: float) -> float:
     """World length of the view ray from depth 1 up to the polygon: |(v_u/v_h) U + (v_v/v_h) V + s n|."""
     a = constants.axes
     x = along_u * a[0, 0] + along_v * a[1, 0] + a[2, 0]
@@ -78,8 +81,8 @@ def distance_to_eye(constants, along_u, along_v):
 
 
 @device
-def keep(found, pixel, step, u, v, d, bounded):
+def keep(found: Hits, i: int, step: Whole, u: float, v: float, d: float, bounded: bool) -> None:
     """Write a hit at depth d, after so many steps; one beside the map stays discarded."""
     if in_domain(u, v, bounded):
-        found.linear_index[pixel], found.hit_index[pixel] = step, step
-        found.u[pixel], found.v[pixel], found.h[pixel] = u, v, -d
+        found.linear_index[i], found.hit_index[i] = step, step
+        found.u[i], found.v[i], found.h[i] = u, v, -d

@@ -4,7 +4,7 @@ With the ray's speed m = |(v_u, v_v)| / v_h in (u, v) per depth, a cone of ratio
 leaves the cone after c (D - d) / (m + c) of depth. N steps from d = 0, with height and ratio fetched bilinearly from one
 texture (`cones` makes the ratios); the hit is where the last one ends, at or above the surface.
 
-Arrays: points (3, P), eye (4,), found and fetches (P,), one a pixel, as in `sought.Sought`.
+Arrays: points (3, P), eye (4,), found and fetches (P,), one a point, as in `sought.Sought`.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def _trace(
     repeat: Wrap, points: Floats, first: int, eye: Floats, texels: Texels, ratios: Texels, columns: float, rows: float,
     steps: int, found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """Hits of a wave of pixels."""
+    """Hits of a wave of points."""
     u, v, along_u, along_v, depth = lanes(), lanes(), lanes(), lanes(), lanes()
     count, seen = view_rays(points, first, eye, u, v, along_u, along_v)
     if not seen:
@@ -55,9 +55,9 @@ def _trace(
     cone_steps(repeat, texels, ratios, columns, rows, u, v, along_u, along_v, steps, depth)
     for lane in range(count):
         if not np.isnan(u[lane]):
-            pixel, d = first + lane, depth[lane]
-            fetches[pixel] = steps
-            keep(found, pixel, steps, u[lane] - along_u[lane] * d, v[lane] - along_v[lane] * d, d, repeat is None)
+            i, d = first + lane, depth[lane]
+            fetches[i] = steps
+            keep(found, i, steps, u[lane] - along_u[lane] * d, v[lane] - along_v[lane] * d, d, repeat is None)
 
 
 @kernel
@@ -65,7 +65,7 @@ def cone_search(
     repeat: Wrap, points: Floats, eye: Floats, texels: Texels, ratios: Texels, columns: float, rows: float, steps: int,
     found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """Hits of all pixels. steps: N."""
+    """Hits of all points. steps: N."""
     for wave in prange((len(fetches) + LANES - 1) // LANES):
         _trace(repeat, points, wave * LANES, eye, texels, ratios, columns, rows, steps, found, fetches)
 

@@ -5,7 +5,7 @@ holds the distance from its centre to that of the nearest solid one (SciPy's Euc
 end within about a voxel of the surface. From C a fixed number of steps goes along the unit ray, each as far as the texture,
 fetched trilinearly, says; where the last one ends is the hit, whether or not the surface is there.
 
-Arrays: points (3, P), eye (4,), found and fetches (P,), one a pixel, as in `sought.Sought`; texels, of distances,
+Arrays: points (3, P), eye (4,), found and fetches (P,), one a point, as in `sought.Sought`; texels, of distances,
 (layers * rows * columns,).
 """
 
@@ -65,11 +65,11 @@ def fetch_distance(
 
 @device
 def _trace(
-    repeat: Wrap, points: Floats, pixel: int, eye: Floats, texels: Floats, columns: float, rows: float, layers: int,
+    repeat: Wrap, points: Floats, i: int, eye: Floats, texels: Floats, columns: float, rows: float, layers: int,
     steps: int, found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """The hit of a pixel."""
-    u, v, along_u, along_v, seen = view_ray(points, pixel, eye)
+    """The hit of a i."""
+    u, v, along_u, along_v, seen = view_ray(points, i, eye)
     if not seen:
         return
     d = 0.0
@@ -77,8 +77,8 @@ def _trace(
     for _ in range(steps):
         d += fetch_distance(texels, columns, rows, layers, repeat, u - along_u * d, v - along_v * d, d) / length
     d = min(d, 1.0)
-    fetches[pixel] = steps
-    keep(found, pixel, steps, u - along_u * d, v - along_v * d, d, repeat is None)
+    fetches[i] = steps
+    keep(found, i, steps, u - along_u * d, v - along_v * d, d, repeat is None)
 
 
 @kernel
@@ -86,9 +86,9 @@ def donnelly_search(
     repeat: Wrap, points: Floats, eye: Floats, texels: Floats, columns: float, rows: float, layers: int, steps: int,
     found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """Hits of all pixels. steps: N."""
-    for pixel in prange(len(fetches)):
-        _trace(repeat, points, pixel, eye, texels, columns, rows, layers, steps, found, fetches)
+    """Hits of all points. steps: N."""
+    for i in prange(len(fetches)):
+        _trace(repeat, points, i, eye, texels, columns, rows, layers, steps, found, fetches)
 
 
 def search(s: Sought) -> None:

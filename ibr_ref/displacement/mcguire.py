@@ -2,9 +2,9 @@
 
 The first of n depth steps, from d = 0, with d >= D(q(d)); n = round(2N (1 - w_z) + N w_z), w_z the cosine between the view
 ray and the normal. Heights come from level `lod_bias` of the mip chain (trilinear): blurred as much as the steps would miss.
-A GPU adds the bias to the level of the pixel's own footprint, which counts as 0 here, as in all other systems.
+A GPU adds the bias to the level of the i's own footprint, which counts as 0 here, as in all other systems.
 
-Arrays: points (3, P), found and fetches (P,), one a pixel, as in `sought.Sought`.
+Arrays: points (3, P), found and fetches (P,), one a point, as in `sought.Sought`.
 """
 
 from __future__ import annotations
@@ -66,11 +66,11 @@ def levels_at(chain: list[Floats], level: float) -> tuple[Level, Level, float]:
 
 @device
 def _march(
-    repeat: Wrap, points: Floats, pixel: int, constants: Uniforms, fine: Level, coarse: Level, share: float, steps: int,
+    repeat: Wrap, points: Floats, i: int, constants: Uniforms, fine: Level, coarse: Level, share: float, steps: int,
     found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """The hit of a pixel; share: of the coarse level."""
-    u, v, along_u, along_v, seen = view_ray(points, pixel, constants.eye)
+    """The hit of a i; share: of the coarse level."""
+    u, v, along_u, along_v, seen = view_ray(points, i, constants.eye)
     if not seen:
         return
     bounded = repeat is None
@@ -88,15 +88,15 @@ def _march(
             fetch(coarse.texels, coarse.columns, coarse.rows, repeat, p_u, p_v),
             share,
         )
-        fetches[pixel] += 1
+        fetches[i] += 1
         if 0 < k < count:
             margin = min(margin, abs(d - (1.0 - height)))
         if d >= 1.0 - height:
-            keep(found, pixel, k, p_u, p_v, d, bounded)
-            found.height_before[pixel] = before
+            keep(found, i, k, p_u, p_v, d, bounded)
+            found.height_before[i] = before
             break
         before = height
-    found.margin[pixel], found.domain_margin[pixel] = margin, nearest
+    found.margin[i], found.domain_margin[i] = margin, nearest
 
 
 @kernel
@@ -104,9 +104,9 @@ def mcguire_search(
     repeat: Wrap, points: Floats, constants: Uniforms, fine: Level, coarse: Level, share: float, steps: int,
     found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """Hits of all pixels. steps: N."""
-    for pixel in prange(len(fetches)):
-        _march(repeat, points, pixel, constants, fine, coarse, share, steps, found, fetches)
+    """Hits of all points. steps: N."""
+    for i in prange(len(fetches)):
+        _march(repeat, points, i, constants, fine, coarse, share, steps, found, fetches)
 
 
 def search(s: Sought) -> None:

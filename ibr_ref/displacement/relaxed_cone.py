@@ -4,7 +4,7 @@ N steps as in cone step mapping, with the relaxed ratios of `cones`: they end in
 halvings of the whole stretch from the polygon to there, as in the authors' shader: outside, d < D, goes on, inside back; the
 hit is where the last one ends, within 2^-M of that stretch.
 
-Arrays: points (3, P), eye (4,), found and fetches (P,), one a pixel, as in `sought.Sought`.
+Arrays: points (3, P), eye (4,), found and fetches (P,), one a point, as in `sought.Sought`.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def _trace(
     repeat: Wrap, points: Floats, first: int, eye: Floats, texels: Texels, ratios: Texels, columns: float, rows: float,
     steps: int, halvings: int, found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """Hits of a wave of pixels."""
+    """Hits of a wave of points."""
     u, v, along_u, along_v, depth, margin, nearest = lanes(), lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
     count, seen = view_rays(points, first, eye, u, v, along_u, along_v)
     if not seen:
@@ -61,10 +61,10 @@ def _trace(
     _halve(repeat, texels, columns, rows, u, v, along_u, along_v, halvings, depth, margin, nearest)
     for lane in range(count):
         if not np.isnan(u[lane]):
-            pixel, d = first + lane, depth[lane]
-            fetches[pixel] = steps + halvings
-            keep(found, pixel, steps, u[lane] - along_u[lane] * d, v[lane] - along_v[lane] * d, d, repeat is None)
-            found.margin[pixel], found.domain_margin[pixel] = margin[lane], nearest[lane]
+            i, d = first + lane, depth[lane]
+            fetches[i] = steps + halvings
+            keep(found, i, steps, u[lane] - along_u[lane] * d, v[lane] - along_v[lane] * d, d, repeat is None)
+            found.margin[i], found.domain_margin[i] = margin[lane], nearest[lane]
 
 
 @kernel
@@ -72,7 +72,7 @@ def relaxed_cone_search(
     repeat: Wrap, points: Floats, eye: Floats, texels: Texels, ratios: Texels, columns: float, rows: float, steps: int,
     halvings: int, found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """Hits of all pixels. steps, halvings: N and M."""
+    """Hits of all points. steps, halvings: N and M."""
     for wave in prange((len(fetches) + LANES - 1) // LANES):
         _trace(repeat, points, wave * LANES, eye, texels, ratios, columns, rows, steps, halvings, found, fetches)
 

@@ -5,7 +5,7 @@ at the first with H > 1 - k/n. The hit is where the ray crosses the straight lin
 above depth 1 are (1 - k/n, H_k) and (1 - (k-1)/n, H_{k-1}); H_0 counts as 1, as in the shader. Without a stop the hit is at
 depth 1. (The shader's fade to normal mapping in the distance is left out.)
 
-Arrays: points (3, P), found and fetches (P,), one a pixel, as in `sought.Sought`.
+Arrays: points (3, P), found and fetches (P,), one a point, as in `sought.Sought`.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ def crossing(ray: float, height: float, ray_before: float, height_before: float)
 
 @device
 def _march(
-    repeat: Wrap, points: Floats, pixel: int, constants: Uniforms, texels: Texels, columns: float, rows: float,
+    repeat: Wrap, points: Floats, i: int, constants: Uniforms, texels: Texels, columns: float, rows: float,
     least: int, most: int, found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """The hit of a pixel."""
-    u, v, along_u, along_v, seen = view_ray(points, pixel, constants.eye)
+    """The hit of a i."""
+    u, v, along_u, along_v, seen = view_ray(points, i, constants.eye)
     if not seen:
         return
     bounded = repeat is None
@@ -49,16 +49,16 @@ def _march(
         if not in_domain(p_u, p_v, bounded):
             break
         height = fetch(texels, columns, rows, repeat, p_u, p_v)
-        fetches[pixel] += 1
+        fetches[i] += 1
         if k < count:
             margin = min(margin, abs(ray - height))
         if height > ray:
             step, depth = k, 1.0 - crossing(ray, height, 1.0 - (k - 1) / count, before)
-            found.height_before[pixel] = before
+            found.height_before[i] = before
             break
         before = height
-    keep(found, pixel, step, u - along_u * depth, v - along_v * depth, depth, bounded)
-    found.margin[pixel], found.domain_margin[pixel] = margin, nearest
+    keep(found, i, step, u - along_u * depth, v - along_v * depth, depth, bounded)
+    found.margin[i], found.domain_margin[i] = margin, nearest
 
 
 @kernel
@@ -66,9 +66,9 @@ def tatarchuk_search(
     repeat: Wrap, points: Floats, constants: Uniforms, texels: Texels, columns: float, rows: float, least: int,
     most: int, found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """Hits of all pixels. least, most: n_min and n_max."""
-    for pixel in prange(len(fetches)):
-        _march(repeat, points, pixel, constants, texels, columns, rows, least, most, found, fetches)
+    """Hits of all points. least, most: n_min and n_max."""
+    for i in prange(len(fetches)):
+        _march(repeat, points, i, constants, texels, columns, rows, least, most, found, fetches)
 
 
 def search(s: Sought) -> None:

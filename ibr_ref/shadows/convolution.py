@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Floats, Indices
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.sampling import clamped, footprint, lerp, mix
@@ -66,7 +66,7 @@ def convolved(occluder: Floats, frame: Frame, window: Window, distance: float, p
 
 
 @device
-def _between_planes(inverse, first, last, count):
+def _between_planes(inverse: float, first: float, last: float, count: int) -> tuple[int, float]:
     """The plane below a distance (inverted, as the planes are), and the share of the next one."""
     if count == 1:
         return 0, 0.0
@@ -76,7 +76,20 @@ def _between_planes(inverse, first, last, count):
 
 
 @device
-def _look_up_row(triangle, world, view, caster, low, high, occluder, ends, images, size, shadow):
+def _look_up_row(
+    triangle: Indices,
+    world: Floats,
+    view: Floats,
+    caster: int,
+    low: Floats,
+    high: Floats,
+    occluder: float,
+    ends: tuple[float, float],
+    images: Floats,
+    size: float,
+    shadow: Floats,
+) -> None:
+    """A row: triangle (W,), world (W, 3 or more), view (4, 4), low, high (2,), images (P, S S), into shadow (W,)."""
     first, last = ends
     for i in range(len(shadow)):
         shadow[i] = 0.0
@@ -99,7 +112,20 @@ def _look_up_row(triangle, world, view, caster, low, high, occluder, ends, image
 
 
 @kernel
-def _look_up(triangle, varyings, view, caster, low, high, occluder, ends, images, size, shadow):
+def _look_up(
+    triangle: Indices,
+    varyings: Floats,
+    view: Floats,
+    caster: int,
+    low: Floats,
+    high: Floats,
+    occluder: float,
+    ends: tuple[float, float],
+    images: Floats,
+    size: float,
+    shadow: Floats,
+) -> None:
+    """All rows of `look_up`; the images flat, (P, S S)."""
     for row in prange(len(shadow)):
         _look_up_row(triangle[row], varyings[row], view, caster, low, high, occluder, ends, images, size, shadow[row])
 

@@ -46,8 +46,8 @@ def forms_of(depths: Floats | None) -> Floats:
 
 
 @device
-def _coefficient(form, corners):
-    """A coefficient: twice an area. corners (4, 3, 2)."""
+def _coefficient(form: Floats, corners: Floats) -> float:
+    """A coefficient: twice an area. form (4, 4), corners (4, 3, 2)."""
     area = 0.0
     for k in range(4):
         for l in range(4):
@@ -59,8 +59,8 @@ def _coefficient(form, corners):
 
 
 @device
-def _slope(form, corners, out):
-    """The coefficient's derivative by [map][corner][u, v], into (24,)."""
+def _slope(form: Floats, corners: Floats, out: Floats) -> None:
+    """The coefficient's derivative by [map][corner][u, v], into (24,). form (4, 4), corners (4, 3, 2)."""
     out[:] = 0.0
     for k in range(4):
         for l in range(4):
@@ -79,20 +79,23 @@ def _slope(form, corners, out):
 
 
 @device
-def _coefficients_of(forms, corners, out):
+def _coefficients_of(forms: Floats, corners: Floats, out: Floats) -> None:
+    """All of a triangle, into (9,): forms (9, 4, 4), corners (4, 3, 2)."""
     for m in range(len(forms)):
         out[m] = _coefficient(forms[m], corners)
 
 
 @kernel
-def _all_coefficients(forms, corners, out):
+def _all_coefficients(forms: Floats, corners: Floats, out: Floats) -> None:
+    """Of all triangles, into (E, 9): forms (F, 9, 4, 4), corners (E, 4, 3, 2)."""
     count = len(out) // len(forms)
     for e in prange(len(out)):
         _coefficients_of(forms[e // count], corners[e], out[e])
 
 
 @device
-def _push(forms, corners, least, strength, matrix, gradient):
+def _push(forms: Floats, corners: Floats, least: float, strength: float, matrix: Floats, gradient: Floats) -> None:
+    """Of a triangle, added to matrix (24, 24) and gradient (24,): forms (9, 4, 4), corners (4, 3, 2)."""
     slope = np.empty(24)
     for m in range(len(forms)):
         room = _coefficient(forms[m], corners) - least
@@ -104,7 +107,8 @@ def _push(forms, corners, least, strength, matrix, gradient):
 
 
 @kernel
-def _push_all(forms, corners, least, strength, matrix, gradient):
+def _push_all(forms: Floats, corners: Floats, least: float, strength: float, matrix: Floats, gradient: Floats) -> None:
+    """Of all: forms (F, 9, 4, 4), corners (E, 4, 3, 2), matrix (E, 24, 24), gradient (E, 24)."""
     count = len(corners) // len(forms)
     for e in prange(len(corners)):
         _push(forms[e // count], corners[e], least, strength, matrix[e], gradient[e])
@@ -149,5 +153,8 @@ def barrier(corners: Floats, least: float, strength: float, forms: Floats = EVEN
 def add_barrier(
     corners: Floats, least: float, strength: float, matrix: Floats, gradient: Floats, forms: Floats = EVEN
 ) -> None:
-    """Add the barrier's slope, and the part of its curvature that is never negative, to equations by element."""
+    """Add the barrier's slope, and the part of its curvature that is never negative, to equations by element.
+
+    matrix (E, 24, 24), gradient (E, 24): of the corners (E, 4, 3, 2).
+    """
     _push_all(forms, corners, least, strength, matrix, gradient)

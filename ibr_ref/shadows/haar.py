@@ -4,6 +4,9 @@ A block of 16 x 16 texels is transformed over four levels: of two neighbours the
 the detail, along rows, then along columns, then again on the quarter of means. Details below the threshold are dropped.
 What is kept is rounded: the mean of the block to 1/255, details, which lie in [-1/2, 1/2], to 1/254. A block is its mean,
 and, unless it is flat, a bit for each coefficient and a byte for each that is not zero.
+
+What kernels take: image and out (S, S); mean and start (B,) and data as in `Blocks`; of one block its texels (16, 16),
+codes (256,), row by row, and spare (16,), room for a row or column.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Bytes, Floats, Indices, Ints
 from ibr_ref.jit import device, kernel, prange, routine
 
 BLOCK = 16
@@ -22,7 +25,7 @@ _FLAT = -1
 
 
 class Blocks(NamedTuple):
-    """A compressed map of S x S, row by row of blocks."""
+    """A compressed map of S x S, row by row of blocks, B of them."""
 
     mean: NDArray[np.uint8]
     """(B,) of every block, times 255."""
@@ -38,7 +41,7 @@ class Blocks(NamedTuple):
 
 
 @device
-def _forward(block, spare):
+def _forward(block: Floats, spare: Floats) -> None:
     """The transform in place: the block's mean at [0, 0], details around it."""
     size = BLOCK
     while size > 1:
@@ -58,7 +61,7 @@ def _forward(block, spare):
 
 
 @device
-def _backward(block, spare):
+def _backward(block: Floats, spare: Floats) -> None:
     """The inverse of `_forward`: columns, then rows, from the smallest quarter outwards."""
     size = 2
     while size <= BLOCK:
@@ -78,7 +81,7 @@ def _backward(block, spare):
 
 
 @device
-def _load(image, row, column, block):
+def _load(image: Floats, row: int, column: int, block: Floats) -> None:
     """A block of the image; beyond its border the last texels go on."""
     last = len(image) - 1
     for i in range(BLOCK):
@@ -87,7 +90,7 @@ def _load(image, row, column, block):
 
 
 @device
-def _quantize(block, threshold, codes):
+def _quantize(block: Floats, threshold: float, codes: Ints) -> int:
     """Details as whole numbers from -127 to 127, 0 for those below the threshold; the number of others."""
     count = 0
     for i in range(BLOCK):
@@ -101,7 +104,7 @@ def _quantize(block, threshold, codes):
 
 
 @device
-def _write(codes, start, data):
+def _write(codes: Ints, start: int, data: Bytes) -> int:
     """Flags and coefficients of a block; where its bytes end."""
     end = start + _BITS
     data[start:end] = 0
@@ -114,7 +117,7 @@ def _write(codes, start, data):
 
 
 @routine
-def _encode(image, threshold, mean, start, data):
+def _encode(image: Floats, threshold: float, mean: Bytes, start: Indices, data: Bytes) -> int:
     """All blocks, in order; the number of bytes of `data` in use."""
     across = (len(image) + BLOCK - 1) // BLOCK
     block, spare, codes = np.empty((BLOCK, BLOCK)), np.empty(BLOCK), np.empty(BLOCK * BLOCK, np.int64)
@@ -131,7 +134,8 @@ def _encode(image, threshold, mean, start, data):
 
 
 @device
-def _decode_block(mean, start, data, spare, block):
+def _decode_block(mean: int, start: int, data: Bytes, spare: Floats, block: Floats) -> None:
+    """A block that is not flat, from its mean and where its bytes begin."""
     block[:] = 0.0
     if start != _FLAT:
         at = start + _BITS
@@ -144,7 +148,8 @@ def _decode_block(mean, start, data, spare, block):
 
 
 @device
-def _decode_blocks(mean, start, data, blocks_row, out):
+def _decode_blocks(mean: Bytes, start: Indices, data: Bytes, blocks_row: int, out: Floats) -> None:
+    """A row of blocks, into the map."""
     size = len(out)
     across = (size + BLOCK - 1) // BLOCK
     block, spare = np.empty((BLOCK, BLOCK)), np.empty(BLOCK)
@@ -162,7 +167,8 @@ def _decode_blocks(mean, start, data, blocks_row, out):
 
 
 @kernel
-def _decode(mean, start, data, out):
+def _decode(mean: Bytes, start: Indices, data: Bytes, out: Floats) -> None:
+    """All blocks, into the map."""
     for blocks_row in prange((len(out) + BLOCK - 1) // BLOCK):
         _decode_blocks(mean, start, data, blocks_row, out)
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Floats, Ints, Vector3
 from ibr_ref.jit import device
 
 _SLACK = 1e-9
@@ -65,8 +65,8 @@ def _sorted(centroids: Floats, levels: int) -> tuple[NDArray[np.int64], NDArray[
 
 
 @device
-def _meets_box(hierarchy, i, origin, inverse):
-    """Whether a segment o + t d, t from 0 to 1, meets a box; where 0 inf = NaN says nothing, it does."""
+def _meets_box(hierarchy: Hierarchy, i: int, origin: Vector3, inverse: Vector3) -> bool:
+    """Whether a segment o + t d, t from 0 to 1, meets a box; where 0 inf = NaN says nothing, it does. inverse: 1 / d."""
     near, far = 0.0, 1.0
     for k in range(3):
         a = (hierarchy.low[i, k] - origin[k]) * inverse[k]
@@ -79,7 +79,7 @@ def _meets_box(hierarchy, i, origin, inverse):
 
 
 @device
-def _meets_triangle(corners, origin, direction):
+def _meets_triangle(corners: Floats, origin: Vector3, direction: Vector3) -> bool:
     """Whether a segment meets a triangle (3, 3), its edges included (Moller & Trumbore 1997)."""
     dx, dy, dz = direction
     ux, uy, uz = corners[1, 0] - corners[0, 0], corners[1, 1] - corners[0, 1], corners[1, 2] - corners[0, 2]
@@ -97,7 +97,7 @@ def _meets_triangle(corners, origin, direction):
 
 
 @device
-def meets(hierarchy, origin, direction, waiting):
+def meets(hierarchy: Hierarchy, origin: Vector3, direction: Vector3, waiting: Ints) -> bool:
     """Whether a segment o + t d, 0 < t < 1, meets any triangle. waiting (DEEPEST,): room for boxes."""
     inverse = 1.0 / direction[0], 1.0 / direction[1], 1.0 / direction[2]
     inner = len(hierarchy.low) - len(hierarchy.starts) + 1

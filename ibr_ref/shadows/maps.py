@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Bytes, Floats
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.clip import clip_triangles
 from ibr_ref.pipeline.triangles import Triangles, set_up
@@ -64,7 +64,8 @@ def _triangles(view: View, offset: Floats, size: int) -> Triangles:
 
 
 @device
-def _count_row(samples, k, row, counts):
+def _count_row(samples: Bytes, k: int, row: int, counts: Bytes) -> None:
+    """A row of counts (S, S), of samples (k S, k S) that are 0 or 1."""
     for column in range(counts.shape[1]):
         total = 0
         for i in range(k):
@@ -74,7 +75,8 @@ def _count_row(samples, k, row, counts):
 
 
 @kernel
-def _count(samples, k, counts):
+def _count(samples: Bytes, k: int, counts: Bytes) -> None:
+    """All rows."""
     for row in prange(counts.shape[0]):
         _count_row(samples, k, row, counts)
 

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Floats, Indices, Texels, Vector3
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.sampling import footprint, lerp, nearest_index
@@ -66,13 +66,15 @@ def on_map(frame: Frame, window: Window, count: int) -> Floats:
 
 
 @device
-def _is_on_map(u, v):
+def _is_on_map(u: float, v: float) -> bool:
     return (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (v <= 1.0)
 
 
 @device
-def _mean_blocker(texels, size, search, u, v, scale, nearer_than):
-    """The mean distance of the blockers around a place, 0 without any; and the margins of what was asked."""
+def _mean_blocker(
+    texels: Texels, size: float, search: Floats, u: float, v: float, scale: float, nearer_than: float
+) -> Vector3:
+    """The mean distance of the blockers around a place, 0 without any; and the margins of what was asked. search (N, 2)."""
     total, count, margin, edge = 0.0, 0, np.inf, np.inf
     for i in range(len(search)):
         s, t = u + search[i, 0] * scale, v + search[i, 1] * scale
@@ -87,13 +89,15 @@ def _mean_blocker(texels, size, search, u, v, scale, nearer_than):
 
 
 @device
-def _nearer(texel, nearer_than):
+def _nearer(texel: float, nearer_than: float) -> float:
     return 1.0 if texel < nearer_than else 0.0
 
 
 @device
-def _filtered(texels, size, points, u, v, scale, nearer_than):
-    """The mean of the comparisons around a place, and their smallest margin."""
+def _filtered(
+    texels: Texels, size: float, points: Floats, u: float, v: float, scale: float, nearer_than: float
+) -> tuple[float, float]:
+    """The mean of the comparisons around a place, and their smallest margin. points (M, 2)."""
     total, margin = 0.0, np.inf
     for i in range(len(points)):
         s, t = u + points[i, 0] * scale, v + points[i, 1] * scale
@@ -109,7 +113,7 @@ def _filtered(texels, size, points, u, v, scale, nearer_than):
 
 
 @device
-def _nothing(result, row, i):
+def _nothing(result: Softened, row: int, i: int) -> None:
     for k in range(3):
         result.coord[row, i, k] = 0.0
     result.shadow[row, i], result.blocker[row, i], result.penumbra[row, i] = 0.0, 0.0, 0.0
@@ -117,7 +121,18 @@ def _nothing(result, row, i):
 
 
 @device
-def _soften_row(triangle, world, view, window, texels, size, wanted, row, result):
+def _soften_row(
+    triangle: Indices,
+    world: Floats,
+    view: Floats,
+    window: Window,
+    texels: Texels,
+    size: float,
+    wanted: Filter,
+    row: int,
+    result: Softened,
+) -> None:
+    """A row: triangle (W,), world (W, 3 or more), view (4, 4)."""
     low, high = window.low, window.high
     for i in range(len(triangle)):
         _nothing(result, row, i)
@@ -142,7 +157,17 @@ def _soften_row(triangle, world, view, window, texels, size, wanted, row, result
 
 
 @kernel
-def _soften(triangle, varyings, view, window, texels, size, wanted, result):
+def _soften(
+    triangle: Indices,
+    varyings: Floats,
+    view: Floats,
+    window: Window,
+    texels: Texels,
+    size: float,
+    wanted: Filter,
+    result: Softened,
+) -> None:
+    """All rows of `soften`; the map's texels flat, (S S,)."""
     for row in prange(len(triangle)):
         _soften_row(triangle[row], varyings[row], view, window, texels, size, wanted, row, result)
 

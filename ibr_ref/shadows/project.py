@@ -1,4 +1,8 @@
-"""Stage project: a map as a texture that the light throws onto what is seen (section 2.2)."""
+"""Stage project: a map as a texture that the light throws onto what is seen (section 2.2).
+
+What kernels take: texels (S S,) the map; view and clip (4, 4) the light's matrices; of a row of the picture triangle,
+hidden, shadow and margin (W,), world (W, 3 or more) and coord (4, W).
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Bools, Floats, Indices, Texels, Vector4
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.pipeline.sampling import footprint, lerp, mix, nearest_index
@@ -43,7 +47,7 @@ class Projected(NamedTuple):
 
 
 @device
-def _transform(view, clip, x, y, z):
+def _transform(view: Floats, clip: Floats, x: float, y: float, z: float) -> Vector4:
     """Clip coordinates x, y, z, w of a world position, by one matrix after the other."""
     view_x = view[0, 0] * x + view[0, 1] * y + view[0, 2] * z + view[0, 3]
     view_y = view[1, 0] * x + view[1, 1] * y + view[1, 2] * z + view[1, 3]
@@ -57,7 +61,7 @@ def _transform(view, clip, x, y, z):
 
 
 @device
-def _locate_row(world, view, clip, coord):
+def _locate_row(world: Floats, view: Floats, clip: Floats, coord: Floats) -> None:
     """s, t, r and q_w of a row of fragments, into coord (4, W): the bias matrix is s = (x + q_w)/2, t = (q_w - y)/2."""
     for i in range(len(world)):
         x, y, z, w = _transform(view, clip, world[i, 0], world[i, 1], world[i, 2])
@@ -70,19 +74,19 @@ def _locate_row(world, view, clip, coord):
 
 
 @device
-def _on_map(coord, i):
+def _on_map(coord: Floats, i: int) -> bool:
     """In front of the light and on its map, the border included."""
     s, t = coord[0, i], coord[1, i]
     return (coord[3, i] > 0.0) & (s >= 0.0) & (s <= 1.0) & (t >= 0.0) & (t <= 1.0)
 
 
 @device
-def _to_byte(x):
+def _to_byte(x: float) -> float:
     return np.floor(255.0 * x + 0.5)
 
 
 @device
-def _to_step(x):
+def _to_step(x: float) -> float:
     """Distance, in units of x, to where its rounding to 8 bits changes."""
     y = 255.0 * x + 0.5
     f = y - np.floor(y)
@@ -90,7 +94,7 @@ def _to_step(x):
 
 
 @device
-def _compare(depth, texel, quantized):
+def _compare(depth: float, texel: float, quantized: bool) -> tuple[float, float]:
     """Whether a depth, its bias subtracted, lies behind a texel's, as 0 or 1; and the margin of that."""
     if quantized:
         behind = _to_byte(depth) > _to_byte(texel)
@@ -102,7 +106,9 @@ def _compare(depth, texel, quantized):
 
 
 @device
-def _compare_four(texels, size, s, t, depth, quantized):
+def _compare_four(
+    texels: Texels, size: float, s: float, t: float, depth: float, quantized: bool
+) -> tuple[float, float]:
     """The bilinear mix of the four comparisons around (s, t), and their smallest margin."""
     i00, i10, i01, i11, fx, fy = footprint(s, t, size, size, None)
     c00, m00 = _compare(depth, texels[i00], quantized)
@@ -113,7 +119,7 @@ def _compare_four(texels, size, s, t, depth, quantized):
 
 
 @device
-def _mask_row(texels, size, coord, hidden, shadow, margin):
+def _mask_row(texels: Texels, size: float, coord: Floats, hidden: Bools, shadow: Floats, margin: Floats) -> None:
     """Bilinear fetches of the silhouette; in two loops, as the gathers keep the first one from being vectorized."""
     count = len(shadow)
     index, fraction = np.empty((4, count), np.uint32), np.empty((2, count))
@@ -128,7 +134,9 @@ def _mask_row(texels, size, coord, hidden, shadow, margin):
 
 
 @device
-def _depth_row(texels, size, coord, hidden, lookup, shadow, margin):
+def _depth_row(
+    texels: Texels, size: float, coord: Floats, hidden: Bools, lookup: Lookup, shadow: Floats, margin: Floats
+) -> None:
     """Comparisons of depths: with the nearest texel, or with four."""
     for i in range(len(shadow)):
         shadow[i], margin[i] = 0.0, np.inf
@@ -143,7 +151,7 @@ def _depth_row(texels, size, coord, hidden, lookup, shadow, margin):
 
 
 @device
-def _hide_row(triangle, coord, lookup, hidden):
+def _hide_row(triangle: Indices, coord: Floats, lookup: Lookup, hidden: Bools) -> None:
     """What is lit whatever the map says: no surface, beside the map, behind the light, in a mask the caster itself."""
     last = lookup.caster if lookup.mode == MASK else 2147483647
     for i in range(len(triangle)):
@@ -151,14 +159,14 @@ def _hide_row(triangle, coord, lookup, hidden):
 
 
 @device
-def edge_distance(x):
+def edge_distance(x: float) -> float:
     """From x to the nearest whole number."""
     f = x - np.floor(x)
     return min(f, 1.0 - f)
 
 
 @device
-def _keep_row(triangle, coord, size, margins, row, result):
+def _keep_row(triangle: Indices, coord: Floats, size: float, margins: Floats, row: int, result: Projected) -> None:
     """The arrays that are kept with the shadows."""
     for i in range(len(triangle)):
         seen = triangle[i] >= 0
@@ -170,7 +178,17 @@ def _keep_row(triangle, coord, size, margins, row, result):
 
 
 @device
-def _project_row(triangle, world, view, clip, texels, size, lookup, row, result):
+def _project_row(
+    triangle: Indices,
+    world: Floats,
+    view: Floats,
+    clip: Floats,
+    texels: Texels,
+    size: float,
+    lookup: Lookup,
+    row: int,
+    result: Projected,
+) -> None:
     columns = len(triangle)
     coord, margin, hidden = np.empty((4, columns)), np.empty(columns), np.empty(columns, np.bool_)
     _locate_row(world, view, clip, coord)
@@ -184,7 +202,16 @@ def _project_row(triangle, world, view, clip, texels, size, lookup, row, result)
 
 
 @kernel
-def _project(triangle, varyings, view, clip, texels, size, lookup, result):
+def _project(
+    triangle: Indices,
+    varyings: Floats,
+    view: Floats,
+    clip: Floats,
+    texels: Texels,
+    size: float,
+    lookup: Lookup,
+    result: Projected,
+) -> None:
     for row in prange(triangle.shape[0]):
         _project_row(triangle[row], varyings[row], view, clip, texels, size, lookup, row, result)
 

@@ -9,19 +9,23 @@ and as corner:
 
 The normal equations are kept as elements, one for each triangle of a cell of the 3 x 3 positions: it knows 24 numbers, the
 coordinates of its three corners in four maps, and one thread sums all its texels at all places.
+
+What kernels take: images (9, S S); matrix (E, 24, 24), gradient (E, 24) and cost (E,) as in `Equations`; of one element xs
+and ys (3,), corners (4, 3, 2), of a map (3, 2), affine (4, 2, 2), of a map (2, 2), weights (4,), sums (3, 3, 8, 8) and slope
+(24,); of a texel gradients (4, 2) and barycentric (3,); target (S,) the rendered row.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Floats, Ints, Texels
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.sampling import footprint
-from ibr_ref.pipeline.triangles import SUBPIXELS, columns_in_row, edges_in_row
+from ibr_ref.pipeline.triangles import SUBPIXELS, Edges, columns_in_row, edges_in_row
 from ibr_ref.shadows.folds import four_grids
 
 LOCAL = 24
@@ -58,10 +62,11 @@ class _Elements(NamedTuple):
     x: NDArray[np.int64]
     """(N, T, 3) corners in the window, in 1/256 texel."""
     y: NDArray[np.int64]
+    """(N, T, 3)."""
 
 
 @device
-def _gather(image, u, v, size, gradient):
+def _gather(image: Texels, u: float, v: float, size: float, gradient: Floats) -> float:
     """Bilinear fetch from an image (S S) flat, and its gradient by (u, v) into gradient (2,)."""
     i00, i10, i01, i11, fx, fy = footprint(u, v, size, size, None)
     t00, t10, t01, t11 = image[i00], image[i10], image[i01], image[i11]
@@ -72,7 +77,7 @@ def _gather(image, u, v, size, gradient):
 
 
 @device
-def _affine(xs, ys, corners, size, out):
+def _affine(xs: Ints, ys: Ints, corners: Floats, size: float, out: Floats) -> None:
     """(2, 2) derivative of the texture coordinates by the place in the map, [u or v, x or y]; and the barycentrics'."""
     x0, y0 = np.float64(xs[0]), np.float64(ys[0])
     ax, ay = np.float64(xs[1]) - x0, np.float64(ys[1]) - y0
@@ -85,7 +90,15 @@ def _affine(xs, ys, corners, size, out):
 
 
 @device
-def _add(weights, gradients, affine, barycentric, difference, sums, slope):
+def _add(
+    weights: Floats,
+    gradients: Floats,
+    affine: Floats,
+    barycentric: Floats,
+    difference: float,
+    sums: Floats,
+    slope: Floats,
+) -> None:
     """Add a texel to the sums: [pair of corners][24 / 3 squared] of the matrix, (24,) of the gradient."""
     gx, gy = 0.0, 0.0
     for k in range(4):
@@ -107,7 +120,7 @@ def _add(weights, gradients, affine, barycentric, difference, sums, slope):
 
 
 @device
-def _spread(sums, matrix):
+def _spread(sums: Floats, matrix: Floats) -> None:
     """Sums by pairs of corners, into the symmetric matrix (24, 24)."""
     for a in range(3):
         for b in range(3):
@@ -118,8 +131,18 @@ def _spread(sums, matrix):
 
 
 @device
-def _sum_row(images, first, weights, corners, affine, target, edges, sums, slope):
-    """The texels of a triangle in one row: returns their sum of squares. sums: None where only that is asked for."""
+def _sum_row(
+    images: Floats,
+    first: int,
+    weights: Floats,
+    corners: Floats,
+    affine: Floats,
+    target: Floats,
+    edges: Edges,
+    sums: Floats | None,
+    slope: Any,
+) -> float:
+    """The texels of a triangle in one row: returns their sum of squares. sums, slope: None where only that is asked for."""
     size = np.float64(len(target))
     total = np.float64(edges.e0 + edges.e1 + edges.e2)
     gradients, barycentric = np.empty((4, 2)), np.empty(3)
@@ -144,7 +167,9 @@ def _sum_row(images, first, weights, corners, affine, target, edges, sums, slope
 
 
 @device
-def _sum_element(images, places, elements, cell, t, sums, slope):
+def _sum_element(
+    images: Floats, places: Places, elements: _Elements, cell: int, t: int, sums: Floats | None, slope: Floats | None
+) -> float:
     """One triangle at all places of a cell: returns the sum of squares."""
     size = places.targets.shape[1]
     affine = np.empty((4, 2, 2))
@@ -163,7 +188,16 @@ def _sum_element(images, places, elements, cell, t, sums, slope):
 
 
 @device
-def _run_element(images, places, elements, e, matrix, gradient, cost):
+def _run_element(
+    images: Floats,
+    places: Places,
+    elements: _Elements,
+    e: int,
+    matrix: Floats | None,
+    gradient: Any,
+    cost: Floats,
+) -> None:
+    """matrix, gradient: None where only the sum of squares is asked for."""
     count = elements.sources.shape[1]
     cell, t = e // count, e % count
     if matrix is None:
@@ -175,7 +209,9 @@ def _run_element(images, places, elements, e, matrix, gradient, cost):
 
 
 @kernel
-def _run(images, places, elements, matrix, gradient, cost):
+def _run(
+    images: Floats, places: Places, elements: _Elements, matrix: Floats | None, gradient: Floats | None, cost: Floats
+) -> None:
     for e in prange(len(cost)):
         _run_element(images, places, elements, e, matrix, gradient, cost)
 

@@ -20,8 +20,13 @@ def accumulate(total: Floats, shadow: Floats, count: int, unorm8: bool) -> None:
 
 
 @device
-def _brightness(normal, eye, lights, ambient, shadows, row, column, p):
-    """ambient + the sum of power (1 - ambient)(1 - shadow) max(0, n.l) of all lights, the normal turned to the eye (4,)."""
+def _brightness(
+    normal: Floats, eye: Floats, lights: Lights, ambient: float, shadows: Floats, row: int, column: int, p: Floats
+) -> float:
+    """ambient + the sum of power (1 - ambient)(1 - shadow) max(0, n.l) of all lights, the normal turned to the eye (4,).
+
+    normal (3,), shadows (L, H, W), p (3 or 6,): the point's varyings.
+    """
     nx, ny, nz = normal[0], normal[1], normal[2]
     x, y, z, w = p[0], p[1], p[2], eye[3]
     if nx * (eye[0] - w * x) + ny * (eye[1] - w * y) + nz * (eye[2] - w * z) < 0.0:
@@ -36,7 +41,17 @@ def _brightness(normal, eye, lights, ambient, shadows, row, column, p):
 
 
 @device
-def _resolve_row(surface, shadows, eye, lights, ambient, background, row, color):
+def _resolve_row(
+    surface: Surface,
+    shadows: Floats,
+    eye: Floats,
+    lights: Lights,
+    ambient: float,
+    background: Floats,
+    row: int,
+    color: Floats,
+) -> None:
+    """A row of the picture (H, W, 3): shadows (L, H, W), eye (4,), background (3,)."""
     for column in range(shadows.shape[2]):
         t = surface.triangle[row, column]
         if t < 0:
@@ -51,7 +66,10 @@ def _resolve_row(surface, shadows, eye, lights, ambient, background, row, color)
 
 
 @kernel
-def _resolve(surface, shadows, eye, lights, ambient, background, color):
+def _resolve(
+    surface: Surface, shadows: Floats, eye: Floats, lights: Lights, ambient: float, background: Floats, color: Floats
+) -> None:
+    """All rows."""
     for row in prange(shadows.shape[1]):
         _resolve_row(surface, shadows, eye, lights, ambient, background, row, color)
 

@@ -1,4 +1,7 @@
-"""Conjugate gradients on equations that are kept element by element: no matrix of all unknowns is ever put together."""
+"""Conjugate gradients on equations that are kept element by element: no matrix of all unknowns is ever put together.
+
+Of E elements that know K unknowns each, out of N: matrix (E, K, K), members (E, K); everything else is (N,).
+"""
 
 from __future__ import annotations
 
@@ -7,12 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Floats, Ints
 from ibr_ref.jit import device, routine
 
 
 @device
-def _times(matrix, members, ridge, x, out):
+def _times(matrix: Floats, members: Ints, ridge: Floats, x: Floats, out: Floats) -> None:
     """out = (sum of the elements' matrices + diag(ridge)) x."""
     for i in range(len(x)):
         out[i] = ridge[i] * x[i]
@@ -25,7 +28,7 @@ def _times(matrix, members, ridge, x, out):
 
 
 @device
-def _dot(a, b):
+def _dot(a: Floats, b: Floats) -> float:
     total = 0.0
     for i in range(len(a)):
         total += a[i] * b[i]
@@ -33,7 +36,17 @@ def _dot(a, b):
 
 
 @routine
-def _solve(matrix, members, ridge, diagonal, free, right, steps, tolerance, x):
+def _solve(
+    matrix: Floats,
+    members: Ints,
+    ridge: Floats,
+    diagonal: Floats,
+    free: Floats,
+    right: Floats,
+    steps: int,
+    tolerance: float,
+    x: Floats,
+) -> None:
     """Preconditioned by the diagonal; unknowns that are not free stay 0."""
     n = len(x)
     residual, direction, product = right * free, np.empty(n), np.empty(n)
@@ -59,7 +72,8 @@ def _solve(matrix, members, ridge, diagonal, free, right, steps, tolerance, x):
 
 
 @routine
-def _scatter(values, members, out):
+def _scatter(values: Floats, members: Ints, out: Floats) -> None:
+    """Add values (E, K) to the unknowns (N,) that their elements know."""
     for e in range(len(members)):
         for i in range(members.shape[1]):
             out[members[e, i]] += values[e, i]

@@ -3,7 +3,8 @@
 A mask is 0 and a map of depths 1 outside the caster's silhouette, which is most of it. A fetch of blank texels alone is
 blank to the last bit: a (1 - f) + a f = a for a = 0 and a = 1 and all f in [0, 1].
 
-Coordinates are those of texels here: x = u S - 0.5, of which a fetch reads the columns floor(x) and floor(x) + 1.
+Coordinates are those of texels here: x = u S - 0.5, of which a fetch reads the columns floor(x) and floor(x) + 1. Compiled
+functions take the spans of one map, (S, 2).
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Indices, Whole
 from ibr_ref.jit import device
 from ibr_ref.pipeline.sampling import clamped
 
@@ -32,7 +34,7 @@ def spans(texels: NDArray[np.generic], levels: NDArray[np.float64] | None, blank
 
 
 @device
-def solid_range(spans, top, bottom):
+def solid_range(spans: Indices, top: float, bottom: float) -> tuple[float, float]:
     """The least and the largest x of fetches that may read what is not blank, for y from top to bottom; none: (0, -1)."""
     last = np.float64(len(spans)) - 1.0
     first_row = np.int64(clamped(np.floor(top - _SLACK), 0.0, last))
@@ -46,7 +48,7 @@ def solid_range(spans, top, bottom):
 
 
 @device
-def live_columns(spans, x0, y0, x1, y1, count):
+def live_columns(spans: Indices, x0: float, y0: float, x1: float, y1: float, count: int) -> tuple[Whole, Whole]:
     """The part [first, stop) of a run of `count` columns whose fetches may read what is not blank.
 
     The coordinates go from (x0, y0) to (x1, y1), inside the map, in even steps.

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Floats, Indices
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.clip import clip_triangles
 from ibr_ref.pipeline.lighting import unit
@@ -44,7 +44,8 @@ class Surface(NamedTuple):
 
 
 @kernel
-def _normals(vertices, triangles, out):
+def _normals(vertices: Floats, triangles: Indices, out: Floats) -> None:
+    """Of vertices (V, 3) and triangles (T, 3), into (T, 3)."""
     for t in prange(len(triangles)):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         ux, uy, uz = vertices[b, 0] - vertices[a, 0], vertices[b, 1] - vertices[a, 1], vertices[b, 2] - vertices[a, 2]
@@ -53,14 +54,16 @@ def _normals(vertices, triangles, out):
 
 
 @device
-def _name_row(winner, source, row, out):
+def _name_row(winner: Indices, source: Indices, row: int, out: Indices) -> None:
+    """A row of `_name`."""
     for column in range(winner.shape[1]):
         t = winner[row, column]
         out[row, column] = source[t] if t >= 0 else -1
 
 
 @kernel
-def _name(winner, source, out):
+def _name(winner: Indices, source: Indices, out: Indices) -> None:
+    """From clipped triangles (H, W) to those that they were clipped from, source (C,), into (H, W); -1 stays."""
     for row in prange(winner.shape[0]):
         _name_row(winner, source, row, out)
 

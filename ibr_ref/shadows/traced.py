@@ -9,15 +9,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ibr_ref.array_types import Floats
+from ibr_ref.array_types import Floats, Indices, Ints
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline import memory
 from ibr_ref.shadows.hierarchy import DEEPEST, Hierarchy, build, meets
 
 
 @device
-def _is_lit(hierarchy, light_low, light_high, x, y, z):
-    """Whether the box around a point and the light has nothing in common with the caster's: then no ray need be cast."""
+def _is_lit(hierarchy: Hierarchy, light_low: Floats, light_high: Floats, x: float, y: float, z: float) -> bool:
+    """Whether the box around a point and the light has nothing in common with the caster's: then no ray need be cast.
+
+    light_low, light_high (3,): the ends of the lights' box.
+    """
     low, high = hierarchy.low[0], hierarchy.high[0]
     beside_x = (min(x, light_low[0]) > high[0]) | (max(x, light_high[0]) < low[0])
     beside_y = (min(y, light_low[1]) > high[1]) | (max(y, light_high[1]) < low[1])
@@ -26,8 +29,8 @@ def _is_lit(hierarchy, light_low, light_high, x, y, z):
 
 
 @device
-def _hidden(hierarchy, lights, x, y, z, waiting):
-    """How many of the lights (N, 3) a point does not see."""
+def _hidden(hierarchy: Hierarchy, lights: Floats, x: float, y: float, z: float, waiting: Ints) -> int:
+    """How many of the lights (N, 3) a point does not see. waiting (DEEPEST,): room for boxes."""
     hidden = 0
     for i in range(len(lights)):
         direction = lights[i, 0] - x, lights[i, 1] - y, lights[i, 2] - z
@@ -36,7 +39,17 @@ def _hidden(hierarchy, lights, x, y, z, waiting):
 
 
 @device
-def _trace_row(triangle, world, caster, hierarchy, lights, light_low, light_high, shadow):
+def _trace_row(
+    triangle: Indices,
+    world: Floats,
+    caster: int,
+    hierarchy: Hierarchy,
+    lights: Floats,
+    light_low: Floats,
+    light_high: Floats,
+    shadow: Floats,
+) -> None:
+    """A row: triangle (W,), world (W, 3 or more), lights (N, 3) and the ends of their box (3,), into shadow (W,)."""
     waiting = np.empty(DEEPEST, np.int64)
     for i in range(len(shadow)):
         shadow[i] = 0.0
@@ -48,7 +61,17 @@ def _trace_row(triangle, world, caster, hierarchy, lights, light_low, light_high
 
 
 @kernel
-def _trace(triangle, varyings, caster, hierarchy, lights, light_low, light_high, shadow):
+def _trace(
+    triangle: Indices,
+    varyings: Floats,
+    caster: int,
+    hierarchy: Hierarchy,
+    lights: Floats,
+    light_low: Floats,
+    light_high: Floats,
+    shadow: Floats,
+) -> None:
+    """All rows of `traced`."""
     rows = len(shadow)
     for turn in prange(rows):
         # Rows far apart in turn, as the shadow lies in a few neighbouring ones.

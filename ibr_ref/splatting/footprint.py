@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bytes, Floats, Vector3, Vector4
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.ellipses import Ellipses
 from ibr_ref.pipeline.memory import arrays
@@ -60,7 +61,7 @@ def ellipses_for(vertices: Vertices) -> Ellipses:
 
 
 @device
-def _linear(m, x, y, z):
+def _linear(m: Floats, x: float, y: float, z: float) -> Vector3:
     """A direction under the linear part of a (4, 4) matrix."""
     return (
         m[0, 0] * x + m[0, 1] * y + m[0, 2] * z,
@@ -70,19 +71,21 @@ def _linear(m, x, y, z):
 
 
 @device
-def _dot(a, b):
+def _dot(a: Vector3, b: Vector3) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @device
-def _along_plane(step, sight, normal, facing):
+def _along_plane(step: Vector3, sight: Vector3, normal: Vector3, facing: float) -> Vector3:
     """A step in the image, taken on the tangent plane."""
     way = _dot(normal, step) / facing
     return step[0] - sight[0] * way, step[1] - sight[1] * way, step[2] - sight[2] * way
 
 
 @device
-def surface_steps(reference, normal, x_n, y_n, depth):
+def surface_steps(
+    reference: Reference, normal: Vector3, x_n: float, y_n: float, depth: float
+) -> tuple[Vector3, Vector3]:
     """P_u and P_v: the world-space steps on the tangent plane to the next pixel on the right, and below."""
     k, m = reference.intrinsics, reference.world_from_view
     scale = depth if reference.perspective else 1.0
@@ -94,7 +97,7 @@ def surface_steps(reference, normal, x_n, y_n, depth):
 
 
 @device
-def _clip_step(view, step):
+def _clip_step(view: View, step: Vector3) -> Vector3:
     """Derivative of clip x, y, w along a world-space step."""
     v = _linear(view.view_from_world, step[0], step[1], step[2])
     c = view.clip_from_view
@@ -106,7 +109,7 @@ def _clip_step(view, step):
 
 
 @device
-def window_step(view, step, window_x, window_y, clip_w):
+def window_step(view: View, step: Vector3, window_x: float, window_y: float, clip_w: float) -> tuple[float, float]:
     """Derivative of the window position along a world-space step, pixels."""
     x, y, w = _clip_step(view, step)
     ndc_x, ndc_y = 2.0 * window_x / view.width - 1.0, 1.0 - 2.0 * window_y / view.height
@@ -114,7 +117,7 @@ def window_step(view, step, window_x, window_y, clip_w):
 
 
 @device
-def _shrink(filters, xx, yy):
+def _shrink(filters: Filter, xx: float, yy: float) -> float:
     """What the footprint's variances are multiplied by, so that with the filter's the box is as large as is allowed."""
     side = filters.most / (2.0 * filters.cutoff)
     room = side * side - filters.low_pass * filters.low_pass
@@ -123,7 +126,7 @@ def _shrink(filters, xx, yy):
 
 
 @device
-def covariance(filters, x_u, y_u, x_v, y_v):
+def covariance(filters: Filter, x_u: float, y_u: float, x_v: float, y_v: float) -> Vector4:
     """xx, xy, yy of the splat, and its weight at the centre."""
     footprint, low_pass = filters.footprint * filters.footprint, filters.low_pass * filters.low_pass
     xx, xy, yy = x_u * x_u + x_v * x_v, x_u * y_u + x_v * y_v, y_u * y_u + y_v * y_v
@@ -138,14 +141,24 @@ def covariance(filters, x_u, y_u, x_v, y_v):
 
 
 @device
-def _axis_distance(view, p):
+def _axis_distance(view: View, p: Vector3) -> float:
     """Along the view axis."""
     row = view.view_from_world[2]
     return -transform(row, p[0], p[1], p[2])
 
 
 @device
-def _footprint_row(reference, normals, view, filters, row, base, vertices, ellipses):
+def _footprint_row(
+    reference: Reference,
+    normals: Bytes,
+    view: View,
+    filters: Filter,
+    row: int,
+    base: int,
+    vertices: Vertices,
+    ellipses: Ellipses,
+) -> None:
+    """A row of the reference: normals (P, 3); base: the first of the points in vertices and ellipses."""
     k, m = reference.intrinsics, reference.world_from_view
     y_n = normalized_y(k[1, 1], k[1, 2], row)
     for at in range(reference.row_starts[row], reference.row_starts[row + 1]):
@@ -168,7 +181,17 @@ def _footprint_row(reference, normals, view, filters, row, base, vertices, ellip
 
 
 @kernel
-def _footprints(reference, normals, view, filters, first_row, last_row, vertices, ellipses):
+def _footprints(
+    reference: Reference,
+    normals: Bytes,
+    view: View,
+    filters: Filter,
+    first_row: int,
+    last_row: int,
+    vertices: Vertices,
+    ellipses: Ellipses,
+) -> None:
+    """All rows of `footprints`."""
     base = reference.row_starts[first_row]
     for turn in prange(last_row - first_row):
         _footprint_row(reference, normals, view, filters, first_row + turn, base, vertices, ellipses)
@@ -186,6 +209,7 @@ def footprints(
 ) -> None:
     """Fill in the ellipses of the points of the image rows [first_row, last_row), which are placed already.
 
-    The width of a point becomes the larger side of its ellipse's box; a dropped one keeps 0.
+    normals (P, 3): the codes of the reference's pixels. The width of a point becomes the larger side of its ellipse's box;
+    a dropped one keeps 0.
     """
     _footprints(reference, normals, view, filters, first_row, last_row, vertices, ellipses)

@@ -2,6 +2,9 @@
 
 Points are lit in the vertex stage, as in the paper; here that is done for those alone that are seen, which gives the same
 colours sooner.
+
+What kernels take: normals (P, 3), their codes; eye (4,); splat (H, W) the winners, spans (H, 2), color (H, W, 3), background
+(3,); in functions of a row, or a part of it, winners (W,) and color (W, 3); stored (P, 3) and pixels (V,) of `Reference`.
 """
 
 from __future__ import annotations
@@ -9,13 +12,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bytes, Floats, Indices
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.splatting.buffers import Lighting, Reference, View
 from ibr_ref.splatting.vertex import light_pixels
 
 
 @device
-def _resolve_stored(stored, pixels, first, winners, color):
+def _resolve_stored(stored: Floats, pixels: Indices, first: int, winners: Indices, color: Floats) -> None:
     """Without a light the winners of this image in a row of the picture have its own colours."""
     count = len(pixels)
     for column in range(len(winners)):
@@ -26,7 +30,9 @@ def _resolve_stored(stored, pixels, first, winners, color):
 
 
 @device
-def _resolve_lit(reference, normals, lighting, eye, first, winners, color):
+def _resolve_lit(
+    reference: Reference, normals: Bytes, lighting: Lighting, eye: Floats, first: int, winners: Indices, color: Floats
+) -> None:
     """The winners of this image in a row of the picture are gathered, lit together, and put where they are seen."""
     pixels, count = reference.pixels, len(reference.pixels)
     seen, columns = np.empty(len(winners), np.int32), np.empty(len(winners), np.int32)
@@ -44,7 +50,9 @@ def _resolve_lit(reference, normals, lighting, eye, first, winners, color):
 
 
 @device
-def _resolve_row(reference, normals, lighting, eye, first, winners, color):
+def _resolve_row(
+    reference: Reference, normals: Bytes, lighting: Lighting, eye: Floats, first: int, winners: Indices, color: Floats
+) -> None:
     if lighting.lit:
         _resolve_lit(reference, normals, lighting, eye, first, winners, color)
     else:
@@ -52,20 +60,20 @@ def _resolve_row(reference, normals, lighting, eye, first, winners, color):
 
 
 @device
-def _clear_row(background, color):
+def _clear_row(background: Floats, color: Floats) -> None:
     for column in range(len(color)):
         color[column, 0], color[column, 1], color[column, 2] = background[0], background[1], background[2]
 
 
 @kernel
-def clear(background, color):
+def clear(background: Floats, color: Floats) -> None:
     """The background (3,) everywhere in the picture (H, W, 3)."""
     for row in prange(len(color)):
         _clear_row(background, color[row])
 
 
 @device
-def _span(winners):
+def _span(winners: Indices) -> tuple[int, int]:
     first, stop = 0, len(winners)
     while first < stop and winners[first] < 0:
         first += 1
@@ -75,7 +83,7 @@ def _span(winners):
 
 
 @kernel
-def _occupied(splat, spans):
+def _occupied(splat: Indices, spans: Indices) -> None:
     for row in prange(len(splat)):
         spans[row, 0], spans[row, 1] = _span(splat[row])
 
@@ -88,7 +96,16 @@ def occupied(splat: NDArray[np.int32]) -> NDArray[np.int32]:
 
 
 @kernel
-def _resolve(reference, normals, lighting, eye, first, splat, spans, color):
+def _resolve(
+    reference: Reference,
+    normals: Bytes,
+    lighting: Lighting,
+    eye: Floats,
+    first: int,
+    splat: Indices,
+    spans: Indices,
+    color: Floats,
+) -> None:
     for row in prange(len(splat)):
         start, stop = spans[row, 0], spans[row, 1]
         if start < stop:

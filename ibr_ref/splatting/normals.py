@@ -4,6 +4,8 @@ Along each axis of the image the neighbour that is nearer in depth counts (a tie
 the mask or across a jump, abs(dz) > 0.05 z, does not. The normal is the cross product of the two differences, turned to
 face the reference camera; without a usable pair, or where the product is zero, it points to the camera. Stored as
 floor(127 n + 128.5) in 8 bits, (0, 0, 0) off the mask.
+
+What kernels take: depth and valid (P,), points and codes (P, 3), eye (4,), and of one pixel its point p (3,).
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Bytes, Floats, Vector3
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.lighting import unit
 from ibr_ref.splatting.buffers import Reference
@@ -21,7 +24,7 @@ JUMP = 0.05
 
 
 @device
-def step_to(depth, valid, pixel, other, inside):
+def step_to(depth: Floats, valid: Bools, pixel: int, other: int, inside: bool) -> float:
     """Distance in depth to a neighbouring pixel; infinite if it is no neighbour on the same surface."""
     if not inside or not valid[other]:
         return np.inf
@@ -30,7 +33,7 @@ def step_to(depth, valid, pixel, other, inside):
 
 
 @device
-def _nearer(after, before):
+def _nearer(after: float, before: float) -> int:
     """+1 for the neighbour right or below, -1 for the one left or above, 0 for neither."""
     if after == np.inf and before == np.inf:
         return 0
@@ -38,7 +41,9 @@ def _nearer(after, before):
 
 
 @device
-def _surface_normal(depth, valid, points, rows, columns, row, column):
+def _surface_normal(
+    depth: Floats, valid: Bools, points: Floats, rows: int, columns: int, row: int, column: int
+) -> Vector3:
     """The cross product of the two differences; zero without a usable pair."""
     pixel = row * columns + column
     right = step_to(depth, valid, pixel, pixel + 1, column + 1 < columns)
@@ -55,7 +60,7 @@ def _surface_normal(depth, valid, points, rows, columns, row, column):
 
 
 @device
-def _facing(eye, p, x, y, z):
+def _facing(eye: Floats, p: Floats, x: float, y: float, z: float) -> Vector3:
     """The unit normal that faces the camera; (x, y, z) = 0: towards the camera."""
     ex, ey, ez = eye[0] - eye[3] * p[0], eye[1] - eye[3] * p[1], eye[2] - eye[3] * p[2]
     if x == 0.0 and y == 0.0 and z == 0.0:
@@ -67,12 +72,14 @@ def _facing(eye, p, x, y, z):
 
 
 @device
-def _code(n):
+def _code(n: float) -> np.uint8:
     return np.uint8(np.floor(127.0 * n + 128.5))
 
 
 @device
-def _row_normals(depth, valid, points, eye, rows, columns, row, codes):
+def _row_normals(
+    depth: Floats, valid: Bools, points: Floats, eye: Floats, rows: int, columns: int, row: int, codes: Bytes
+) -> None:
     for column in range(columns):
         pixel = row * columns + column
         if valid[pixel]:
@@ -82,13 +89,13 @@ def _row_normals(depth, valid, points, eye, rows, columns, row, codes):
 
 
 @kernel
-def _normals(depth, valid, points, eye, rows, columns, codes):
+def _normals(depth: Floats, valid: Bools, points: Floats, eye: Floats, rows: int, columns: int, codes: Bytes) -> None:
     for row in prange(rows):
         _row_normals(depth, valid, points, eye, rows, columns, row, codes)
 
 
 @device
-def decoded(x, y, z):
+def decoded(x: float, y: float, z: float) -> Vector3:
     """The unit normal that a pixel's code stands for: (k - 128)/127, normalized."""
     return unit(
         (np.float64(x) - 128.0) / 127.0,

@@ -3,6 +3,8 @@
 Each point is unprojected, transformed, given its width, lit and drawn before the next one is looked at. The operations of a
 point are those of the stages, in the same order: the same bits. What differs is that no loop runs over lanes, no work is
 shared out to threads, and points that nobody will see are lit too, as in the paper's vertex stage.
+
+What kernels take: normals (P, 3), their codes; eye (4,); picture (H, W, 3).
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bytes, Floats, Vector3, Vector4
 from ibr_ref.jit import device, routine
 from ibr_ref.pipeline.lighting import homogeneous, lit_channel, towards
 from ibr_ref.pipeline.merge import passes
@@ -21,7 +24,7 @@ from ibr_ref.splatting.vertex import distance, splat_width
 
 
 @device
-def _world(reference, row, pixel):
+def _world(reference: Reference, row: int, pixel: int) -> Vector3:
     """T_R->W: a pixel's point."""
     k, m = reference.intrinsics, reference.world_from_view
     y_n = normalized_y(k[1, 1], k[1, 2], row)
@@ -31,7 +34,7 @@ def _world(reference, row, pixel):
 
 
 @device
-def _times(m, p):
+def _times(m: Floats, p: Vector4) -> Vector4:
     """A (4, 4) matrix applied to a homogeneous point, each row summed from left to right."""
     return (
         m[0, 0] * p[0] + m[0, 1] * p[1] + m[0, 2] * p[2] + m[0, 3] * p[3],
@@ -42,7 +45,7 @@ def _times(m, p):
 
 
 @device
-def place_point(view, law, p):
+def place_point(view: View, law: Law, p: Vector3) -> tuple[float, float, float, float, float]:
     """Window x, y, depth, the width, and the law's denominator; NaN and width 0 for a point that is dropped."""
     p_view = _times(view.view_from_world, (p[0], p[1], p[2], 1.0))
     x, y, z, w = _times(view.clip_from_view, p_view)
@@ -54,7 +57,7 @@ def place_point(view, law, p):
 
 
 @device
-def _power(base, exponent):
+def _power(base: float, exponent: int) -> float:
     """By repeated squaring, lowest bit first."""
     result = 1.0
     while exponent > 0:
@@ -66,7 +69,7 @@ def _power(base, exponent):
 
 
 @device
-def _highlight(lighting, normal, cosine, l, v):
+def _highlight(lighting: Lighting, normal: Vector3, cosine: float, l: Vector3, v: Vector3) -> float:
     """specular max(0, r.v)^exponent where n.l > 0."""
     specular = lighting.phong[2]
     if not (specular > 0.0 and cosine > 0.0):
@@ -79,7 +82,9 @@ def _highlight(lighting, normal, cosine, l, v):
 
 
 @device
-def _light_point(reference, normals, lighting, eye, pixel, p):
+def _light_point(
+    reference: Reference, normals: Bytes, lighting: Lighting, eye: Floats, pixel: int, p: Vector3
+) -> Vector3:
     """Phong with the pixel's colour and 8-bit normal; without a light its own colour."""
     albedo = reference.color[pixel]
     if not lighting.lit:
@@ -98,7 +103,17 @@ def _light_point(reference, normals, lighting, eye, pixel, p):
 
 
 @device
-def _draw_point(x, y, z, width, disc, index, color, target, picture):
+def _draw_point(
+    x: float,
+    y: float,
+    z: float,
+    width: float,
+    disc: bool,
+    index: np.int32,
+    color: Vector3,
+    target: Target,
+    picture: Floats,
+) -> None:
     """The depth test at every pixel that a splat covers, and its colour where it passes."""
     x, y = snapped(x), snapped(y)
     left, right = span(x, width, 0.0, np.float64(picture.shape[1]))
@@ -119,7 +134,18 @@ def _draw_point(x, y, z, width, disc, index, color, target, picture):
 
 
 @routine
-def _draw_all(reference, normals, view, law, lighting, disc, first, vertices, target, picture):
+def _draw_all(
+    reference: Reference,
+    normals: Bytes,
+    view: View,
+    law: Law,
+    lighting: Lighting,
+    disc: bool,
+    first: int,
+    vertices: Vertices,
+    target: Target,
+    picture: Floats,
+) -> int:
     """Every point of a reference image; the first row with a point for which the law is not sound, or -1."""
     keep = len(vertices.x) > 0
     for row in range(len(reference.row_starts) - 1):

@@ -1,10 +1,14 @@
-"""Stage vertex: every valid reference pixel becomes a point, placed in the window, given a width, and lit (section 3.3)."""
+"""Stage vertex: every valid reference pixel becomes a point, placed in the window, given a width, and lit (section 3.3).
+
+What kernels take: normals (P, 3), their codes; eye (4,); colors (n, 3), of the points from the one with the index `base` on.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Bools, Bytes, Floats, Indices, Lanes, Vector3, Vector4
 from ibr_ref.jit import LANES, device, kernel, prange
 from ibr_ref.pipeline.lighting import homogeneous, light_wave, lit_channel
 from ibr_ref.pipeline.waves import lanes
@@ -16,7 +20,7 @@ _PARTS = 32  # into which a block of image rows is cut, for the threads
 
 
 @device
-def splat_width(law, d):
+def splat_width(law: Law, d: float) -> tuple[float, float]:
     """W_s at the distance d, clamped, and the law's denominator there."""
     alpha, beta, gamma, delta, least, most = law
     denominator = beta * (d * d) + gamma * d + delta
@@ -26,13 +30,15 @@ def splat_width(law, d):
 
 
 @device
-def _row(matrix, i):
+def _row(matrix: Floats, i: int) -> Vector4:
     """A row of a (4, 4) matrix as scalars: the loop over lanes must not read an array that it might be changing."""
     return matrix[i, 0], matrix[i, 1], matrix[i, 2], matrix[i, 3]
 
 
 @device
-def transform4(row0, row1, row2, row3, x, y, z, w):
+def transform4(
+    row0: Vector4, row1: Vector4, row2: Vector4, row3: Vector4, x: float, y: float, z: float, w: float
+) -> Vector4:
     """A (4, 4) matrix, by rows, applied to (x, y, z, w); w = 1 leaves the products of the last column exact."""
     return (
         row0[0] * x + row0[1] * y + row0[2] * z + row0[3] * w,
@@ -43,14 +49,16 @@ def transform4(row0, row1, row2, row3, x, y, z, w):
 
 
 @device
-def distance(eye, p):
+def distance(eye: Vector3, p: Vector3) -> float:
     """From the eye to a point."""
     x, y, z = p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]
     return np.sqrt(x * x + y * y + z * z)
 
 
 @device
-def _store(window_x, window_y, window_z, width, count, first, vertices):
+def _store(
+    window_x: Lanes, window_y: Lanes, window_z: Lanes, width: Lanes, count: int, first: int, vertices: Vertices
+) -> None:
     """Copy a wave's lanes to their vertices."""
     xs, ys, depths, widths = vertices
     for lane in range(count):
@@ -59,7 +67,9 @@ def _store(window_x, window_y, window_z, width, count, first, vertices):
 
 
 @device
-def _place_rows(reference, view, law, first_row, last_row, base, vertices):
+def _place_rows(
+    reference: Reference, view: View, law: Law, first_row: int, last_row: int, base: int, vertices: Vertices
+) -> bool:
     """Place the points of the image rows [first_row, last_row); whether the law has a positive denominator for all.
 
     The loops over lanes have no branches, and write to arrays that are made here: LLVM turns them into SIMD.
@@ -105,7 +115,10 @@ def _place_rows(reference, view, law, first_row, last_row, base, vertices):
 
 
 @kernel
-def _place(reference, view, law, first_row, last_row, vertices, sound):
+def _place(
+    reference: Reference, view: View, law: Law, first_row: int, last_row: int, vertices: Vertices, sound: Bools
+) -> None:
+    """All rows, in parts; sound (_PARTS,): of each, whether the law's denominator is positive."""
     base = reference.row_starts[first_row]
     chunk = (last_row - first_row + _PARTS - 1) // _PARTS
     for part in prange(_PARTS):
@@ -122,7 +135,9 @@ def place(reference: Reference, view: View, law: Law, first_row: int, last_row: 
 
 
 @device
-def light_pixels(reference, normals, lighting, eye_array, pixels, colors):
+def light_pixels(
+    reference: Reference, normals: Bytes, lighting: Lighting, eye_array: Floats, pixels: Indices, colors: Floats
+) -> None:
     """Colours (n, 3) of the points of some pixels (n,) of a reference image: Phong with its colour and 8-bit normal."""
     albedo, depths, width = reference.color, reference.depth, np.float64(reference.columns)
     k, m, perspective = reference.intrinsics, reference.world_from_view, reference.perspective
@@ -161,7 +176,9 @@ def light_pixels(reference, normals, lighting, eye_array, pixels, colors):
 
 
 @device
-def _color_row(reference, normals, lighting, eye, row, base, colors):
+def _color_row(
+    reference: Reference, normals: Bytes, lighting: Lighting, eye: Floats, row: int, base: int, colors: Floats
+) -> None:
     first, stop = reference.row_starts[row], reference.row_starts[row + 1]
     pixels, stored = reference.pixels[first:stop], reference.color
     if lighting.lit:
@@ -173,7 +190,9 @@ def _color_row(reference, normals, lighting, eye, row, base, colors):
 
 
 @kernel
-def _colors(reference, normals, lighting, eye, first_row, last_row, colors):
+def _colors(
+    reference: Reference, normals: Bytes, lighting: Lighting, eye: Floats, first_row: int, last_row: int, colors: Floats
+) -> None:
     base = reference.row_starts[first_row]
     for turn in prange(last_row - first_row):
         _color_row(reference, normals, lighting, eye, first_row + turn, base, colors)

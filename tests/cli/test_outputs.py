@@ -120,13 +120,13 @@ def test_a_bench_asks_before_it_measures(run: Run, tmp_path: Path, monkeypatch: 
 
 def test_maps_go_to_a_pipe(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """They are not read from there."""
-    from ibr_ref.cli import shadows
+    from ibr_ref.cli import shadows_maps
 
     os.mkfifo(tmp_path / "maps")
-    assert not shadows._kept(tmp_path / "maps")
-    assert not shadows._kept(tmp_path / "none.npz")
+    assert not shadows_maps._kept(tmp_path / "maps")
+    assert not shadows_maps._kept(tmp_path / "none.npz")
     (tmp_path / "maps.npz").write_bytes(b"x")
-    assert shadows._kept(tmp_path / "maps.npz")
+    assert shadows_maps._kept(tmp_path / "maps.npz")
 
 
 @pytest.mark.parametrize("command", [("demo", "--out"), ("reproduce", "1", "--out")])

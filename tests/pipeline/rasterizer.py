@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ibr_ref.array_types import Floats, Ints
 from ibr_ref.jit import device, kernel, prange
 from ibr_ref.pipeline.clip import clip_triangles
 from ibr_ref.pipeline.triangles import Triangles, columns_in_row, edges_in_row, fill_depth, fill_varyings, set_up
@@ -27,7 +28,20 @@ class Drawing(NamedTuple):
 
 
 @device
-def _draw_row(xs, ys, zs, ws, varyings, rows, row, width, count, depth, out):
+def _draw_row(
+    xs: Ints,
+    ys: Ints,
+    zs: Floats,
+    ws: Floats,
+    varyings: Floats,
+    rows: Ints,
+    row: int,
+    width: int,
+    count: Ints,
+    depth: Floats,
+    out: Floats,
+) -> None:
+    """A row of all triangles, as in `Triangles`; count, depth (H, W), out (K, H, W)."""
     for t in range(len(xs)):
         if rows[t, 0] <= row < rows[t, 1]:
             edges = edges_in_row(xs[t], ys[t], row)
@@ -39,7 +53,19 @@ def _draw_row(xs, ys, zs, ws, varyings, rows, row, width, count, depth, out):
 
 
 @kernel
-def _draw(xs, ys, zs, ws, varyings, rows, width, height, count, depth, out):
+def _draw(
+    xs: Ints,
+    ys: Ints,
+    zs: Floats,
+    ws: Floats,
+    varyings: Floats,
+    rows: Ints,
+    width: int,
+    height: int,
+    count: Ints,
+    depth: Floats,
+    out: Floats,
+) -> None:
     for row in prange(height):
         _draw_row(xs, ys, zs, ws, varyings, rows, row, width, count, depth, out)
 

@@ -1,4 +1,7 @@
-"""Fetches of waves have the bits of the fetches one by one, at every coordinate that those are tried at."""
+"""Fetches of waves have the bits of the fetches one by one, at every coordinate that those are tried at.
+
+Compiled functions fetch at us and vs (N,), into out (N,), or (3, N) and (4, N).
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ import numpy as np
 from numpy.testing import assert_array_equal
 from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Texels, Wrap
 from ibr_ref.jit import LANES, routine
 from ibr_ref.pipeline.fetches import fetch_color_wave, fetch_cross_wave, fetch_wave
 from ibr_ref.pipeline.waves import lanes, load, store
@@ -14,7 +18,7 @@ from tests.pipeline.texels import fetch_all, fetch_all_channels
 
 
 @routine
-def fetch_waves(repeat, texels, columns, rows, us, vs, out):
+def fetch_waves(repeat: Wrap, texels: Texels, columns: float, rows: float, us: Floats, vs: Floats, out: Floats) -> None:
     u, v, sample = lanes(), lanes(), lanes()
     for first in range(0, len(us), LANES):
         load(us, first, u)
@@ -24,7 +28,9 @@ def fetch_waves(repeat, texels, columns, rows, us, vs, out):
 
 
 @routine
-def fetch_color_waves(repeat, texels, columns, rows, us, vs, out):
+def fetch_color_waves(
+    repeat: Wrap, texels: Texels, columns: float, rows: float, us: Floats, vs: Floats, out: Floats
+) -> None:
     u, v, red, green, blue = lanes(), lanes(), lanes(), lanes(), lanes()
     for first in range(0, len(us), LANES):
         load(us, first, u)
@@ -36,7 +42,9 @@ def fetch_color_waves(repeat, texels, columns, rows, us, vs, out):
 
 
 @routine
-def fetch_cross_waves(repeat, texels, columns, rows, us, vs, out):
+def fetch_cross_waves(
+    repeat: Wrap, texels: Texels, columns: float, rows: float, us: Floats, vs: Floats, out: Floats
+) -> None:
     u, v, left, right, above, below = lanes(), lanes(), lanes(), lanes(), lanes(), lanes()
     for first in range(0, len(us), LANES):
         load(us, first, u)

@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
+from ibr_ref.array_types import Floats, Indices, Lanes
 from ibr_ref.jit import LANES, routine
 from ibr_ref.pipeline import waves
 from ibr_ref.pipeline.waves import index_lanes, lanes, largest, load, load_indices, smallest, store, store_indices
 
 
 @routine
-def moved(source, indices, first, floats, whole):
-    """Through the lanes and back, one wave further on."""
+def moved(source: Floats, indices: Indices, first: int, floats: Floats, whole: Indices) -> None:
+    """Through the lanes and back, one wave further on; all (N,)."""
     wave, numbers = lanes(), lanes()
     load(source, first, wave)
     load_indices(indices, first, numbers)
@@ -24,21 +25,21 @@ def moved(source, indices, first, floats, whole):
 
 
 @routine
-def extremes(values):
+def extremes(values: Lanes) -> tuple[float, float]:
     wave = lanes()
     load(values, 0, wave)
     return smallest(wave), largest(wave)
 
 
 @routine
-def extremes_as_meant(values):
+def extremes_as_meant(values: Lanes) -> tuple[float, float]:
     wave = lanes()
     waves._load(values, 0, wave)
     return waves._smallest(wave), waves._largest(wave)
 
 
 @routine
-def shares_nothing():
+def shares_nothing() -> tuple[int, int, int]:
     """Two arrays of lanes, written one after the other."""
     first, second = index_lanes(), index_lanes()
     for lane in range(LANES):

@@ -1,27 +1,27 @@
-"""Texture fetches of many coordinates at once with the pipeline's own functions, and the same literally."""
+"""Texture fetches of many coordinates at once, us and vs (N,), with the pipeline's own functions; and the same literally."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ibr_ref.array_types import Floats, Ints, Texels, Wrap
 from ibr_ref.jit import kernel, prange
 from ibr_ref.pipeline.sampling import fetch, footprint, mix_channel, nearest_index
 
-Floats = NDArray[np.float64]
-
 
 @kernel
-def fetch_all(repeat, texels, columns, rows, us, vs, out):
-    """Bilinear fetches from a one-channel texture."""
+def fetch_all(repeat: Wrap, texels: Texels, columns: float, rows: float, us: Floats, vs: Floats, out: Floats) -> None:
+    """Bilinear fetches from a one-channel texture, out (N,)."""
     for i in prange(len(us)):
         out[i] = fetch(texels, columns, rows, repeat, us[i], vs[i])
 
 
 @kernel
-def fetch_all_channels(repeat, texels, columns, rows, us, vs, out):
+def fetch_all_channels(
+    repeat: Wrap, texels: Texels, columns: float, rows: float, us: Floats, vs: Floats, out: Floats
+) -> None:
     """Bilinear fetches from a three-channel texture, out (N, 3)."""
     for i in prange(len(us)):
         i00, i10, i01, i11, fx, fy = footprint(us[i], vs[i], columns, rows, repeat)
@@ -30,7 +30,7 @@ def fetch_all_channels(repeat, texels, columns, rows, us, vs, out):
 
 
 @kernel
-def touch_all(repeat, columns, rows, us, vs, indices):
+def touch_all(repeat: Wrap, columns: float, rows: float, us: Floats, vs: Floats, indices: Ints) -> None:
     """The four texels of each bilinear fetch and the one of a nearest fetch: indices (N, 5)."""
     for i in prange(len(us)):
         i00, i10, i01, i11, _, _ = footprint(us[i], vs[i], columns, rows, repeat)

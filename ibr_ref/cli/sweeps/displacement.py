@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ibr_ref.cli import base_polygon, options
+from ibr_ref.cli.groups import grouped, told
 from ibr_ref.cli.sweeps import shared
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
+
+if TYPE_CHECKING:
+    from ibr_ref.displacement import Scene
 
 EXAMPLES = """
 Examples:
@@ -30,75 +35,74 @@ class Against(StrEnum):
     exact = "exact"
 
 
-def command(
-    over: shared.Overs,
+@dataclass(frozen=True, kw_only=True)
+class Maps:
+    """Options: those of `base_polygon.Maps` that a sweep has."""
+
     height: Annotated[
         Path | None, typer.Option(help="Height map, as `ibr-ref render` reads it. Without: the built-in box.")
-    ] = None,
+    ] = None
     height_range: Annotated[
         options.Pair | None,
         typer.Option(
             parser=options.pair, metavar="LOW,HIGH", help="Heights that become 0 and 1, in the file's numbers."
         ),
-    ] = None,
-    color: base_polygon.Color = None,
-    normal: base_polygon.Normal = None,
-    facade: base_polygon.Facade = None,
-    facade_tile: base_polygon.FacadeTile = base_polygon.TILE,
-    invert_height: base_polygon.InvertHeight = False,
+    ] = None
+    color: base_polygon.Color = None
+    normal: base_polygon.Normal = None
+    facade: base_polygon.Facade = None
+    facade_tile: base_polygon.FacadeTile = base_polygon.TILE
+    invert_height: base_polygon.InvertHeight = False
     height_scale: Annotated[
         float | None, typer.Option(parser=options.number, help="Height of white, world units. Without: 0.15.")
-    ] = None,
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class View:
+    """Options: the first view, and the light."""
+
     eye: Annotated[
         options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="The eye of the first view.")
-    ] = options.Vector(0.6, -1.25, 0.95),
+    ] = options.Vector(0.6, -1.25, 0.95)
     target: Annotated[
         options.Vector, typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point that it looks at.")
-    ] = options.Vector(0, 0, 0),
-    light: base_polygon.LightDirection = base_polygon.LIGHT,
-    size: shared.Size = shared.SMALL,
+    ] = options.Vector(0, 0, 0)
+    light: base_polygon.LightDirection = base_polygon.LIGHT
+    size: shared.Size = shared.SMALL
+
+
+@grouped
+def command(
+    *,
+    maps: Maps,
+    view: View,
     views: shared.Views = 1,
     against: Annotated[
         Against, typer.Option(help="What is true: the first intersection with the solid.")
     ] = Against.exact,
-    out: shared.Out = None,
-    plot: shared.Plot = None,
-    bound: shared.OfBound = None,
-    cost: shared.Cost = None,
-    scheduler: shared.Scheduler = None,
-    workers: shared.Workers = None,
+    wanted: shared.Wanted,
 ) -> None:
     """Which parameters does my height map need? Every combination from every view, against the first intersection.
 
     Measures: wrong (share of the pixels), silhouette, smear, drift, fetches, milliseconds.
     """
+    shared.run("displacement", wanted, views, lambda: (_scene(maps, view), against.value))
 
-    def make() -> tuple[Any, Any]:
-        from ibr_ref import displacement, models
-        from ibr_ref.scene import Camera, Light
 
-        if height is None:
-            polygon = models.box()
-        else:
-            heights, normals = base_polygon.read_maps(
-                height, None, normal, invert_height=invert_height, exif=True, height_range=height_range
-            )
-            proportions = heights.proportions(height_scale, None)
-            polygon = base_polygon.polygon(
-                heights, normals, color, facade, proportions=proportions, facade_tile=facade_tile, exif=True
-            )
-        view = Camera.look_at(
-            eye=eye, target=target, up=options.up(eye, target), vertical_fov=45.0, width=size.width, height=size.height
-        )
-        scene = displacement.Scene(
-            polygons=[polygon],
-            camera=view.fitted(displacement.bounding_points([polygon], view)),
-            light=Light(direction=light),
-            background=(1.0, 1.0, 1.0),
-        )
-        return scene, against.value
+def _scene(maps: Maps, view: View) -> Scene:
+    from ibr_ref import displacement, models
+    from ibr_ref.scene import Camera, Light
 
-    shared.run("displacement", shared.Wanted(over, views, out, plot, bound, cost, scheduler, workers), make)
+    polygon = models.box() if maps.height is None else base_polygon.polygon(base_polygon.Maps(**told(maps)))
+    up, (width, height) = options.up(view.eye, view.target), view.size
+    camera = Camera.look_at(eye=view.eye, target=view.target, up=up, vertical_fov=45.0, width=width, height=height)
+    return displacement.Scene(
+        polygons=[polygon],
+        camera=camera.fitted(displacement.bounding_points([polygon], camera)),
+        light=Light(direction=view.light),
+        background=(1.0, 1.0, 1.0),
+    )
 
 
 def goes_with() -> dict[str, Beside]:

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ibr_ref.cli import options, shadows_stage
+from ibr_ref.cli.groups import grouped
 from ibr_ref.cli.sweeps import shared
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
 
@@ -27,8 +28,9 @@ class Against(StrEnum):
     direct = "direct"
 
 
+@grouped
 def command(
-    over: shared.Overs,
+    *,
     caster: Annotated[Path | None, typer.Option(help="The mesh that moves. Without: a horse.")] = None,
     up: shadows_stage.UpAxis = None,
     light: Annotated[
@@ -44,12 +46,7 @@ def command(
     against: Annotated[
         Against, typer.Option(help="What is true: maps rendered for every sample of the light.")
     ] = Against.direct,
-    out: shared.Out = None,
-    plot: shared.Plot = None,
-    bound: shared.OfBound = None,
-    cost: shared.Cost = None,
-    scheduler: shared.Scheduler = None,
-    workers: shared.Workers = None,
+    wanted: shared.Wanted,
 ) -> None:
     """Which maps does my caster need? Every combination at every place of the caster, against maps rendered there.
 
@@ -65,7 +62,7 @@ def command(
         )
         return scene, against.value
 
-    shared.run("shadows", shared.Wanted(over, views, out, plot, bound, cost, scheduler, workers), make)
+    shared.run("shadows", wanted, views, make)
 
 
 def goes_with() -> dict[str, Beside]:

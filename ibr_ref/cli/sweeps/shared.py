@@ -17,39 +17,8 @@ from ibr_ref.progress import progress
 if TYPE_CHECKING:
     from ibr_ref.sweep import Sweep
 
-Overs = Annotated[
-    list[values.Over],
-    typer.Option(
-        "--over",
-        parser=values.over,
-        metavar="NAME=VALUES",
-        help="A parameter, called as the field of Params or the option of `ibr-ref render`, and its values: A,B,.. or "
-        "FROM:TO:STEP. Once for each; a single value holds it fixed.",
-    ),
-]
 Views = Annotated[int, typer.Option(parser=options.whole, help="How many views, from around the scene.")]
 Places = Annotated[int, typer.Option("--views", parser=options.whole, help="How many places of the caster.")]
-Out = Annotated[
-    Path | None,
-    typer.Option(help="The table, as Parquet. A sweep that was interrupted goes on from it; more values add to it."),
-]
-Plot = Annotated[Path | None, typer.Option(help="Error against cost of all settings, as PNG.")]
-OfBound = Annotated[
-    values.Bound | None,
-    typer.Option(
-        parser=values.bound, metavar="MEASURE=NUMBER", help="Name the cheapest setting that meets this in every view."
-    ),
-]
-Cost = Annotated[str | None, typer.Option(help="The measure that settings should have little of.")]
-Scheduler = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler. Without: a cluster of this machine.")
-]
-Workers = Annotated[
-    int | None,
-    typer.Option(
-        parser=options.whole, help="Processes of this machine. Without: one a processor; 0: this process, without Dask."
-    ),
-]
 Size = Annotated[options.Size, typer.Option(parser=options.size, metavar="WxH", help="Pixels of a picture.")]
 
 SMALL = options.Size(320, 240)
@@ -58,21 +27,49 @@ _MOST_LINES = 30
 """Of the frontier that are printed."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Wanted:
-    """The options that all sweeps have."""
+    """Options: what is swept over, what is looked for, and who draws."""
 
-    over: list[values.Over]
-    views: int
-    out: Path | None
-    plot: Path | None
-    bound: values.Bound | None
-    cost: str | None
-    scheduler: str | None
-    workers: int | None
+    over: Annotated[
+        list[values.Over],
+        typer.Option(
+            "--over",
+            parser=values.over,
+            metavar="NAME=VALUES",
+            help="A parameter, called as the field of Params or the option of `ibr-ref render`, and its values: A,B,.. or "
+            "FROM:TO:STEP. Once for each; a single value holds it fixed.",
+        ),
+    ]
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="The table, as Parquet. A sweep that was interrupted goes on from it; more values add to it."
+        ),
+    ] = None
+    plot: Annotated[Path | None, typer.Option(help="Error against cost of all settings, as PNG.")] = None
+    bound: Annotated[
+        values.Bound | None,
+        typer.Option(
+            parser=values.bound,
+            metavar="MEASURE=NUMBER",
+            help="Name the cheapest setting that meets this in every view.",
+        ),
+    ] = None
+    cost: Annotated[str | None, typer.Option(help="The measure that settings should have little of.")] = None
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler. Without: a cluster of this machine.")
+    ] = None
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            parser=options.whole,
+            help="Processes of this machine. Without: one a processor; 0: this process, without Dask.",
+        ),
+    ] = None
 
 
-def run(method: str, wanted: Wanted, make: Callable[[], tuple[Any, Any]]) -> None:
+def run(method: str, wanted: Wanted, views: int, make: Callable[[], tuple[Any, Any]]) -> None:
     """Sweep over what `make` gives, a scene and what it is measured against, and print what was found."""
     with progress(3) as step:
         step("reading the scene")
@@ -97,7 +94,7 @@ def run(method: str, wanted: Wanted, make: Callable[[], tuple[Any, Any]]) -> Non
             method,
             scene,
             over={each.name: each.values for each in wanted.over},
-            views=wanted.views,
+            views=views,
             against=against,
             out=wanted.out,
             scheduler=wanted.scheduler,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ibr_ref.cli import depth_set_options, options, splatting_sources
+from ibr_ref.cli.groups import grouped, told
 from ibr_ref.cli.sweeps import shared
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ibr_ref.scene import DepthImage
+    from ibr_ref.splatting import Scene
 
 EXAMPLES = """
 Examples:
@@ -37,72 +40,85 @@ class Against(StrEnum):
     pictures = "pictures"
 
 
-def command(
-    over: shared.Overs,
+@dataclass(frozen=True, kw_only=True)
+class References:
+    """Options: the references, and the pictures that they are compared with."""
+
     mesh: Annotated[
         Path | None, typer.Option(help="A mesh, of which reference images are made. Without: the built-in kettle.")
-    ] = None,
-    count: Annotated[int, typer.Option(parser=options.whole, help="4, 9, 16 or 32 reference images of the mesh.")] = 9,
-    reference_size: Annotated[
-        int, typer.Option(parser=options.whole, help="Pixels a side of a reference image.")
-    ] = 320,
-    rgbd: depth_set_options.Rgbd = None,
+    ] = None
+    count: Annotated[int, typer.Option(parser=options.whole, help="4, 9, 16 or 32 reference images of the mesh.")] = 9
+    reference_size: Annotated[int, typer.Option(parser=options.whole, help="Pixels a side of a reference image.")] = 320
+    rgbd: depth_set_options.Rgbd = None
     cameras: Annotated[
         options.Cameras,
         typer.Option(parser=options.cameras, metavar="I,J,..|all", help="--rgbd: the pictures that are references."),
-    ] = options.Cameras((0,)),
+    ] = options.Cameras((0,))
     seen_from: Annotated[
         options.Cameras | None,
         typer.Option(parser=options.cameras, metavar="I,J,..", help="--against pictures: the views."),
-    ] = None,
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class View:
+    """Options: the first view."""
+
     eye: Annotated[
         options.Vector | None,
         typer.Option(
             parser=options.vector, metavar="X,Y,Z", help="The eye of the first view. Without: from the front."
         ),
-    ] = None,
+    ] = None
     target: Annotated[
         options.Vector | None,
         typer.Option(parser=options.vector, metavar="X,Y,Z", help="Point that it looks at. Without: the middle."),
-    ] = None,
-    size: shared.Size = shared.SMALL,
+    ] = None
+    size: shared.Size = shared.SMALL
+
+
+@grouped
+def command(
+    *,
+    references: References,
+    view: View,
     views: shared.Views = 1,
     against: Annotated[
         Against | None,
         typer.Option(help="What colours are compared with: the mesh, or other pictures of --rgbd. Without: the mesh."),
     ] = None,
-    out: shared.Out = None,
-    plot: shared.Plot = None,
-    bound: shared.OfBound = None,
-    cost: shared.Cost = None,
-    scheduler: shared.Scheduler = None,
-    workers: shared.Workers = None,
+    wanted: shared.Wanted,
 ) -> None:
     """Which splats do my references need? Every combination from every view: holes, overdraw, and decibels where known.
 
     Measures: holes, coverage, overdraw, decibels, milliseconds.
     """
-    chosen = against.value if against is not None else ("nothing" if rgbd is not None else "mesh")
-    if chosen == "pictures" and not seen_from:
+    seen_from = references.seen_from
+    chosen = against or (Against.nothing if references.rgbd is not None else Against.mesh)
+    if chosen is Against.pictures and not seen_from:
         raise typer.BadParameter(
             "--against: found pictures without --seen-from, allowed: beside --rgbd and --seen-from"
         )
-    total = len(seen_from) if chosen == "pictures" and seen_from else views
+    total = len(seen_from) if chosen is Against.pictures and seen_from else views
+    shared.run("splatting", wanted, total, lambda: _scene(references, view, chosen))
 
-    def make() -> tuple[Any, Any]:
-        from ibr_ref import io, models, splatting
 
-        truth: Any = None
-        if rgbd is not None:
-            images: Sequence[DepthImage] = io.read_depth_set(rgbd, views=cameras or None)
-            truth = io.read_depth_set(rgbd, views=seen_from) if chosen == "pictures" else None
-        else:
-            solid = models.kettle() if mesh is None else io.read_mesh(mesh)
-            images, truth = models.depth_rig(solid, count, size=reference_size), solid if chosen == "mesh" else None
-        camera = splatting_sources.view_of(images, eye, target, options.Vector(0, 0, 1), 45.0, size, None, None)
-        return splatting.Scene(images=images, camera=camera, light=None, background=(1.0, 1.0, 1.0)), truth
+def _scene(references: References, view: View, against: Against) -> tuple[Scene, Any]:
+    """The scene, and what is true of it."""
+    from ibr_ref import io, models, splatting
 
-    shared.run("splatting", shared.Wanted(over, total, out, plot, bound, cost, scheduler, workers), make)
+    rgbd = references.rgbd
+    truth: Any = None
+    if rgbd is not None:
+        images: Sequence[DepthImage] = io.read_depth_set(rgbd, views=references.cameras or None)
+        truth = io.read_depth_set(rgbd, views=references.seen_from) if against is Against.pictures else None
+    else:
+        solid = models.kettle() if references.mesh is None else io.read_mesh(references.mesh)
+        images = models.depth_rig(solid, references.count, size=references.reference_size)
+        truth = solid if against is Against.mesh else None
+    seen = splatting_sources.Seen(**told(view))
+    camera = splatting_sources.view_of(images, seen, None, None)
+    return splatting.Scene(images=images, camera=camera, light=None, background=(1.0, 1.0, 1.0)), truth
 
 
 def goes_with() -> dict[str, Beside]:
