@@ -68,7 +68,7 @@ def _trace(
     repeat: Wrap, points: Floats, i: int, eye: Floats, texels: Floats, columns: float, rows: float, layers: int,
     steps: int, found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """The hit of a i."""
+    """The hit of a point."""
     u, v, along_u, along_v, seen = view_ray(points, i, eye)
     if not seen:
         return

@@ -69,7 +69,7 @@ def _march(
     repeat: Wrap, points: Floats, i: int, constants: Uniforms, fine: Level, coarse: Level, share: float, steps: int,
     found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """The hit of a i; share: of the coarse level."""
+    """The hit of a point; share: of the coarse level."""
     u, v, along_u, along_v, seen = view_ray(points, i, constants.eye)
     if not seen:
         return

@@ -33,7 +33,7 @@ def _march(
     repeat: Wrap, points: Floats, i: int, constants: Uniforms, texels: Texels, columns: float, rows: float,
     least: int, most: int, found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """The hit of a i."""
+    """The hit of a point."""
     u, v, along_u, along_v, seen = view_ray(points, i, constants.eye)
     if not seen:
         return

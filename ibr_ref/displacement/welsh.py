@@ -21,7 +21,7 @@ def _offset(
     repeat: Wrap, points: Floats, i: int, constants: Uniforms, texels: Texels, columns: float, rows: float,
     found: Hits, fetches: Indices,
 ) -> None:  # fmt: skip
-    """The offset of a i."""
+    """The offset of a point."""
     u, v, along_u, along_v, seen = view_ray(points, i, constants.eye)
     if not seen:
         return
