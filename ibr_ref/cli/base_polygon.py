@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ibr_ref.choices import BYTE_ORDERS, HEIGHT_KINDS
 from ibr_ref.cli import options
 
 if TYPE_CHECKING:
@@ -31,23 +31,15 @@ LightDirection = Annotated[
 ]
 LIGHT = options.Vector(-0.6, -0.5, 1)
 
+if TYPE_CHECKING:
+    HeightFormat = str
+    ByteOrder = str
+else:
+    HeightFormat = options.choices("HeightFormat", HEIGHT_KINDS, "Of a height file that does not say it.")
+    ByteOrder = options.choices("ByteOrder", BYTE_ORDERS, "Of raw samples.")
+
 _MOST_GREYS = 2048
 """Texels a side of the colours made of heights: a large map's would take three times its memory."""
-
-
-class HeightFormat(StrEnum):
-    """Of a height file that does not say it."""
-
-    hgt = "hgt"
-    raw = "raw"
-    terrarium = "terrarium"
-
-
-class ByteOrder(StrEnum):
-    """Of raw samples."""
-
-    little = "little"
-    big = "big"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,9 +154,9 @@ def _read(maps: Maps) -> tuple[HeightMap, NDArray[np.float64] | None]:
         heights = io.read_height_map(
             maps.height,
             exif,
-            kind=maps.height_format and maps.height_format.value,
+            kind=maps.height_format and str(maps.height_format),
             size=maps.height_size,
-            order=maps.height_order and maps.height_order.value,
+            order=maps.height_order and str(maps.height_order),
             height_range=maps.height_range,
             nodata=maps.nodata,
             fill=maps.fill,

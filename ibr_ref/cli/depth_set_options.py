@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ibr_ref.choices import CAMERA_AXES, DEPTHS_ALONG, PIXEL_CENTERS, POSES
 from ibr_ref.cli import options
 from ibr_ref.cli.groups import told
 
@@ -26,33 +27,16 @@ class Format(StrEnum):
     folder = "folder"
 
 
-class Convention(StrEnum):
-    """Axes of cameras."""
-
-    opencv = "opencv"
-    opengl = "opengl"
-
-
-class Poses(StrEnum):
-    """Direction of poses."""
-
-    camera_to_world = "camera_to_world"
-    world_to_camera = "world_to_camera"
-
-
-class Along(StrEnum):
-    """What depths are measured along."""
-
-    axis = "axis"
-    ray = "ray"
-
-
-class PixelCenters(StrEnum):
-    """Places of pixels' centres in the intrinsics."""
-
-    integer = "integer"
-    half = "half"
-
+if TYPE_CHECKING:
+    Convention = str
+    Poses = str
+    Along = str
+    PixelCenters = str
+else:
+    Convention = options.choices("Convention", CAMERA_AXES, "Axes of cameras.")
+    Poses = options.choices("Poses", POSES, "Direction of poses.")
+    Along = options.choices("Along", DEPTHS_ALONG, "What depths are measured along.")
+    PixelCenters = options.choices("PixelCenters", PIXEL_CENTERS, "Places of pixels' centres in the intrinsics.")
 
 Rgbd = Annotated[
     Path | None, typer.Option(help="A folder of pictures with depth, intrinsics and poses: what `--format` lists.")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from inspect import signature
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ibr_ref.choices import FACES, INTERVALS
 from ibr_ref.cli import base_polygon, depth_set_options, emptiness, options, own_case, pictures
 from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.groups import grouped, told
@@ -38,24 +38,13 @@ if TYPE_CHECKING:
     from ibr_ref.scene import BasePolygon, Camera
 
     Method = str
+    Interval = str
+    FaceSet = str
 else:
     Method = options.choices("Method", SEARCHES, "Search for the hit.")
-PROTRUDED = Method("protruded")
-
-
-class Interval(StrEnum):
-    """Stretch of the view ray that is searched."""
-
-    paper = "paper"
-    volume = "volume"
-
-
-class FaceSet(StrEnum):
-    """Faces of the volume that are drawn."""
-
-    auxiliary = "auxiliary"
-    base = "base"
-    extended = "extended"
+    Interval = options.choices("Interval", INTERVALS, "Stretch of the view ray that is searched.")
+    FaceSet = options.choices("FaceSet", FACES, "Faces of the volume that are drawn.")
+PROTRUDED, PAPER, AUXILIARY = Method("protruded"), Interval("paper"), FaceSet("auxiliary")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,8 +82,8 @@ class Search:
     shadow_steps: Annotated[
         int, typer.Option(parser=options.whole, help="Samples towards the light; 0: no self-shadow.")
     ] = 0
-    interval: Annotated[Interval, typer.Option(help="Stretch of the view ray that is searched.")] = Interval.paper
-    faces: Annotated[FaceSet, typer.Option(help="Faces of the volume that are drawn.")] = FaceSet.auxiliary
+    interval: Annotated[Interval, typer.Option(help="Stretch of the view ray that is searched.")] = PAPER
+    faces: Annotated[FaceSet, typer.Option(help="Faces of the volume that are drawn.")] = AUXILIARY
     method: Annotated[
         Method, typer.Option(help="Search for the hit; from relief on, systems to compare with: shapes sink, not rise.")
     ] = PROTRUDED

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ibr_ref.choices import MAPPED, SHADOWED_BY, SOFT
 from ibr_ref.cli import (
     depth_set_options,
     emptiness,
@@ -23,7 +24,6 @@ from ibr_ref.cli import (
 from ibr_ref.cli.command import given
 from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.groups import grouped
-from ibr_ref.cli.shadows_maps import Method
 from ibr_ref.cli.what_goes_with_what import GIVEN, Beside, always
 from ibr_ref.methods import named
 from ibr_ref.progress import progress
@@ -89,14 +89,14 @@ def read(
         shadows_several.check_goes_with(ensemble, _of_one_alone(making, case))
     first, method = ensemble.scene(0, 0), making.method
     scene = ensemble if several else first
-    if method.soft:
-        soft = shadows.SoftParams(method=method.value, map_size=making.map_size, map_samples=making.map_samples)
+    if method in SOFT:
+        soft = shadows.SoftParams(method=str(method), map_size=making.map_size, map_samples=making.map_samples)
         return Described(first, soft, {})
     params, maps = shadows_maps.params(making, stage.samples, given(context))
-    if method is not Method.warp:
+    if method != "warp":
         return Described(scene, params, {})
     if several:
-        made = shadows.prepare_ensemble(ensemble, params, controls=making.controls.value, progress=within)
+        made = shadows.prepare_ensemble(ensemble, params, controls=str(making.controls), progress=within)
         return Described(scene, params, {"maps": made})
     return Described(scene, params, {"maps": maps or shadows_maps.prepared(first, params, making, within)})
 
@@ -113,7 +113,7 @@ def _of_one_alone(making: shadows_maps.Making, case: Path | None) -> dict[str, o
     """What goes with one caster and one light alone: options with their values."""
     method = making.method
     return {
-        f"--method {method.value}": method.soft or method is Method.pcss,
+        f"--method {method}": method in (*SOFT, "pcss"),
         f"--maps {making.maps}": making.maps,
         f"--case {case}": case,
     }
@@ -184,9 +184,8 @@ def _end(case: Path | None, scene: Any, params: Any, inputs: dict[str, Any]) -> 
 
 def goes_with() -> dict[str, Beside]:
     """Beside which others each option is read."""
-    from ibr_ref.shadows.inputs import MAPPED, METHODS, READ_BY
-    from ibr_ref.shadows.soft import READ_BY as SOFT
-    from ibr_ref.shadows.soft import SOFT_METHODS
+    from ibr_ref.shadows.inputs import READ_BY
+    from ibr_ref.shadows.soft import READ_BY as READ_BY_SOFT
 
     def warped(name: str) -> Beside:
         return Beside(f"others do not read {name}", {"method": READ_BY[name]})
@@ -199,11 +198,11 @@ def goes_with() -> dict[str, Beside]:
         "up": Beside("the built-in horse stands", {"caster": GIVEN}),
         "samples": Beside("others take the whole light", {"method": MAPPED}),
         "light_size": Beside(
-            "light_size is that of more than its centre", {"method": (*SOFT_METHODS, "pcss")}, {"samples": (5, 9)}
+            "light_size is that of more than its centre", {"method": (*SOFT, "pcss")}, {"samples": (5, 9)}
         ),
-        "map_size": Beside("rays need no map_size", {"method": (*METHODS, *SOFT["map_size"])}),
+        "map_size": Beside("rays need no map_size", {"method": (*SHADOWED_BY, *READ_BY_SOFT["map_size"])}),
         "map_samples": Beside(
-            "map_samples count coverage", {"method": MAPPED, "content": "mask"}, {"method": SOFT["map_samples"]}
+            "map_samples count coverage", {"method": MAPPED, "content": "mask"}, {"method": READ_BY_SOFT["map_samples"]}
         ),
         "content": Beside("others do not read content", {"method": MAPPED}),
         "rows": warped("rows"),

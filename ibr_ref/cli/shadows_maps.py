@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ibr_ref.choices import CONTENTS, CONTROLS, INTERPOLATIONS, POLICIES, SHADOWED_BY, SOFT
 from ibr_ref.cli import options
 from ibr_ref.cli.groups import told
 
@@ -18,50 +18,20 @@ if TYPE_CHECKING:
     from ibr_ref.shadows import Maps, Params, Scene
 
 
-class Method(StrEnum):
-    """Where the shadow map comes from; or another way to a soft shadow than samples of the light."""
-
-    warp = "warp"
-    direct = "direct"
-    grid = "grid"
-    traced = "traced"
-    convolution = "convolution"
-    pcss = "pcss"
-
-    @property
-    def soft(self) -> bool:
-        """Drawn by `render_soft`."""
-        return self in (Method.traced, Method.convolution)
-
-
-class Policy(StrEnum):
-    """How the maps around the object's place are warped."""
-
-    dissolve = "dissolve"
-    nearest = "nearest"
-
-
-class Interpolation(StrEnum):
-    """Pace of the control points between two maps."""
-
-    linear = "linear"
-    projective = "projective"
-
-
-class Content(StrEnum):
-    """What a map holds."""
-
-    mask = "mask"
-    depth = "depth"
-
-
-class Controls(StrEnum):
-    """Placement of the control points."""
-
-    fast = "fast"
-    best = "best"
-    bounds = "bounds"
-    identity = "identity"
+if TYPE_CHECKING:
+    Method = str
+    Policy = str
+    Interpolation = str
+    Content = str
+    Controls = str
+else:
+    Method = options.choices("Method", (*SHADOWED_BY, *SOFT), "Where the shadow comes from.")
+    Policy = options.choices("Policy", POLICIES, "How the maps around the object's place are warped.")
+    Interpolation = options.choices("Interpolation", INTERPOLATIONS, "Pace of the control points between two maps.")
+    Content = options.choices("Content", CONTENTS, "What a map holds.")
+    Controls = options.choices("Controls", CONTROLS, "Placement of the control points.")
+WARP, DISSOLVE, LINEAR = Method("warp"), Policy("dissolve"), Interpolation("linear")
+MASK, FAST = Content("mask"), Controls("fast")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,19 +44,19 @@ class Making:
             help="Maps warped, rendered for every sample, or a grid of them; or the whole light: rays, Soler & Sillion's "
             "convolution, percentage-closer soft shadows."
         ),
-    ] = Method.warp
+    ] = WARP
     map_size: Annotated[int, typer.Option(parser=options.whole, help="Texels a side of a shadow map.")] = 512
     map_samples: Annotated[
         int, typer.Option(parser=options.whole, help="k: a texel is the coverage of k x k samples.")
     ] = 1
     rows: Annotated[int, typer.Option(parser=options.whole, help="Control points downwards.")] = 15
     columns: Annotated[int, typer.Option(parser=options.whole, help="Control points across.")] = 5
-    policy: Annotated[Policy, typer.Option(help="Six warps a map, or three.")] = Policy.dissolve
+    policy: Annotated[Policy, typer.Option(help="Six warps a map, or three.")] = DISSOLVE
     interpolation: Annotated[
         Interpolation, typer.Option(help="Pace between two maps: even, as in the paper, or that of perspective.")
-    ] = Interpolation.linear
-    content: Annotated[Content, typer.Option(help="Silhouettes, or depths.")] = Content.mask
-    controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = Controls.fast
+    ] = LINEAR
+    content: Annotated[Content, typer.Option(help="Silhouettes, or depths.")] = MASK
+    controls: Annotated[Controls, typer.Option(help="How the control points are placed.")] = FAST
     maps: Annotated[
         Path | None,
         typer.Option(
@@ -119,7 +89,7 @@ def prepared(scene: Scene, params: Params, making: Making, within: Callable[[str
     """Maps made here, and written where a file is named."""
     from ibr_ref import shadows
 
-    made = shadows.prepare(scene, params, controls=making.controls.value, progress=within)
+    made = shadows.prepare(scene, params, controls=str(making.controls), progress=within)
     if making.maps is not None:
         made.save(making.maps)
     return made
@@ -140,7 +110,7 @@ def _loaded(making: Making, fields: Mapping[str, Any], named: set[str]) -> Maps 
     if path is None or not _kept(path):
         return None
     maps = shadows.Maps.load(path)
-    wanted = {**fields, "controls": making.controls.value}
+    wanted = {**fields, "controls": str(making.controls)}
     for name, value in {**maps.made_with, "controls": maps.placement}.items():
         if name in named and wanted[name] != value:
             flag = "--" + name.replace("_", "-")

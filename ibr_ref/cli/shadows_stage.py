@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
+from ibr_ref.choices import UP
 from ibr_ref.cli import options
 
 if TYPE_CHECKING:
@@ -19,13 +19,10 @@ if TYPE_CHECKING:
 Value = TypeVar("Value")
 
 
-class Up(StrEnum):
-    """Axis of the mesh that points up."""
-
-    y = "y"
-    z = "z"
-
-
+if TYPE_CHECKING:
+    Up = str
+else:
+    Up = options.choices("Up", UP, "Axis of the mesh that points up.")
 UpAxis = Annotated[Up | None, typer.Option(help="Axis of the mesh that is up. Without: by its format.")]
 
 
@@ -135,4 +132,4 @@ def read_caster(path: Path | None, up: Up | None) -> Mesh:
     """The mesh with z up; without a path the horse."""
     from ibr_ref import io, models
 
-    return models.horse() if path is None else io.read_upright(path, None if up is None else up.value)
+    return models.horse() if path is None else io.read_upright(path, None if up is None else str(up))

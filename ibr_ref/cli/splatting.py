@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ibr_ref.choices import DRAWN_BY, SHAPES
 from ibr_ref.cli import depth_set_options, emptiness, options, own_case, pictures, splatting_sources
 from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.groups import grouped, told
@@ -40,19 +40,13 @@ Examples:
 """
 
 
-class Shape(StrEnum):
-    """Shape of a splat."""
-
-    square = "square"
-    disc = "disc"
-    ellipse = "ellipse"
-
-
-class Method(StrEnum):
-    """How the points are drawn."""
-
-    shader = "shader"
-    software = "software"
+if TYPE_CHECKING:
+    Shape = str
+    Method = str
+else:
+    Shape = options.choices("Shape", SHAPES, "Shape of a splat.")
+    Method = options.choices("Method", DRAWN_BY, "How the points are drawn.")
+SQUARE, SHADER = Shape("square"), Method("shader")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +65,7 @@ class Splats:
     shape: Annotated[
         Shape,
         typer.Option(help="Shape of a splat; ellipse: elliptical weighted averages (Zwicker et al. 2001), no law."),
-    ] = Shape.square
+    ] = SQUARE
     footprint: Annotated[
         float,
         typer.Option(parser=options.number, help="--shape ellipse: deviation of a point's Gaussian, reference pixels."),
@@ -91,7 +85,7 @@ class Splats:
     ] = 0.01
     method: Annotated[
         Method, typer.Option(help="software: the paper's comparison, a loop on one thread; the same picture.")
-    ] = Method.shader
+    ] = SHADER
 
 
 @grouped

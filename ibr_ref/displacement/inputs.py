@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ibr_ref.choices import DEPTHS, FACES, INTERVALS
 from ibr_ref.scene import BasePolygon, Camera, Light, checks, limits
 from ibr_ref.scene.documented import documented
 from ibr_ref.scene.limits import Limit, Real, Whole, Word
@@ -20,10 +21,6 @@ COMPARED = tuple(name for name, search in SEARCHES.items() if search.room is not
 READ_BY = read_by()
 """Fields that only some methods read, and these: for the others the picture and the hits do not depend on them. (The
 numbers of hits, `march.hit_index`, are of the lattice N 2^M for "exact" and "texture" too.)"""
-
-INTERVALS = ("paper", "volume")
-FACES = ("auxiliary", "base", "extended")
-DEPTHS = ("displaced", "polygon")
 
 MOST_LATTICE = 2**24
 """Largest N 2^M: the lattice of a ray, so that float32 ports can hold every index."""

@@ -16,9 +16,6 @@ from ibr_ref.io.sizes import check_size
 from ibr_ref.io.values import decoded, is_exr, is_pfm, is_tiff
 
 RAW_ENDINGS = (".raw", ".r8", ".r16", ".r32")
-KINDS = ("hgt", "raw", "terrarium")
-"""Files that do not say what they are."""
-ORDERS = ("little", "big")
 
 _GREY_TOLERANCE = 4.5 / 255.0
 """Channels that differ by less are one grey, as lossy compression leaves it."""

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ibr_ref.io.elevations import KINDS, ORDERS, Elevations, of_file
+from ibr_ref.choices import BYTE_ORDERS, HEIGHT_KINDS
+from ibr_ref.io.elevations import Elevations, of_file
 from ibr_ref.io.files import contents, naming
 from ibr_ref.scene import checks
 
@@ -109,9 +110,9 @@ def _check_options(
     fill: float | None,
 ) -> None:
     if kind is not None:
-        checks.choice("kind", kind, KINDS)
+        checks.choice("kind", kind, HEIGHT_KINDS)
     if order is not None:
-        checks.choice("order", order, ORDERS)
+        checks.choice("order", order, BYTE_ORDERS)
     if size is not None:
         for side in checks.vector("size", size, 2).tolist():
             checks.whole("size", side, low=1, high=2**28)

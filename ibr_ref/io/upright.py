@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ibr_ref.choices import UP
 from ibr_ref.io.meshes import read_mesh
 from ibr_ref.scene import Mesh, checks
 
@@ -19,7 +20,7 @@ def read_upright(path: str | Path, up: str | None = None) -> Mesh:
     Raises ValueError for what `read_mesh` refuses, and for another axis.
     """
     if up is not None:
-        checks.choice("up", up, ["y", "z"])
+        checks.choice("up", up, UP)
     mesh = read_mesh(path)
     if up == "z" or (up is None and Path(path).suffix.lower() not in Y_UP):
         return mesh

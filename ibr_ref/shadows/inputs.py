@@ -9,19 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ibr_ref.choices import CONTENTS, INTERPOLATIONS, MAPPED, POLICIES, SHADOWED_BY
 from ibr_ref.scene import AreaLight, Camera, Mesh, checks, limits
 from ibr_ref.scene.documented import documented
 from ibr_ref.scene.limits import Flag, Limit, Real, Whole, Word
 from ibr_ref.scene.vectors import cross, dot, length
 from ibr_ref.shadows.maps import MOST_SAMPLES
 
-CONTENTS = ("mask", "depth")
-POLICIES = ("dissolve", "nearest")
-INTERPOLATIONS = ("linear", "projective")
 ACCUMULATIONS = ("float", "unorm8")
-MAPPED = ("warp", "direct", "grid")
-"""Methods that have a map for each sample of the light."""
-METHODS = (*MAPPED, "pcss")
 STORAGES = ("raw", "haar")
 READ_BY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("rows", "columns", "policy", "interpolation"), ("warp",)),
@@ -65,7 +60,7 @@ LIMITS: dict[str, Limit] = {
     "policy": Word(POLICIES),
     "interpolation": Word(INTERPOLATIONS),
     "accumulation": Word(ACCUMULATIONS),
-    "method": Word(METHODS),
+    "method": Word(SHADOWED_BY),
     "grid_size": Whole(2, 1024),
     "grid_mix": Flag(),
     "grid_storage": Word(STORAGES),

@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ibr_ref.array_types import Floats
+from ibr_ref.choices import CONTENTS
 from ibr_ref.io.files import contents, naming
 from ibr_ref.io.outputs import atomic
 from ibr_ref.pipeline.transform import transformed
 from ibr_ref.scene import Mesh, checks
 from ibr_ref.shadows import automatic, maps
 from ibr_ref.shadows import controls as placement
-from ibr_ref.shadows.inputs import CONTENTS, LARGEST_MAP, MOST_CONTROLS, Params, Scene
+from ibr_ref.shadows.inputs import LARGEST_MAP, MOST_CONTROLS, Params, Scene
 from ibr_ref.shadows.placement import Placement
 from ibr_ref.shadows.samples import check_outside, samples_of, widened_range
 from ibr_ref.shadows.selection import Pace

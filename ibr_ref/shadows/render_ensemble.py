@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.array_types import Floats
+from ibr_ref.choices import MAPPED
 from ibr_ref.io import Frame
 from ibr_ref.scene import checks
 from ibr_ref.shadows.automatic import Progress
 from ibr_ref.shadows.ensemble import Ensemble
 from ibr_ref.shadows.grid import MapGrid
-from ibr_ref.shadows.inputs import MAPPED, Params
+from ibr_ref.shadows.inputs import Params
 from ibr_ref.shadows.prepared import Maps, prepare
 from ibr_ref.shadows.project import Lookup, Projected
 from ibr_ref.shadows.render import grouped, images_of, lookup_of, per_sample, projected_from, surface_of

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.array_types import Floats
+from ibr_ref.choices import SOFT
 from ibr_ref.io import Frame
 from ibr_ref.scene import checks
 from ibr_ref.shadows import convolution, maps, parallel
@@ -32,7 +33,6 @@ from ibr_ref.shadows.surface import Surface
 from ibr_ref.shadows.traced import traced
 from ibr_ref.shadows.vertex import place
 
-SOFT_METHODS = ("traced", "convolution")
 READ_BY: dict[str, tuple[str, ...]] = {
     "rays": ("traced",),
     **dict.fromkeys(("map_size", "map_samples", "receiver_planes"), ("convolution",)),
@@ -58,7 +58,7 @@ class SoftParams:
     """P, 1 to 64, of "convolution"."""
 
     def __post_init__(self) -> None:
-        checks.choice("method", self.method, SOFT_METHODS)
+        checks.choice("method", self.method, SOFT)
         wholes = {
             "rays": (1, MOST_RAYS),
             "map_size": (8, LARGEST_MAP),

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
+from ibr_ref.choices import DRAWN_BY, SHAPES
 from ibr_ref.pipeline.ellipses import MOST_CUTOFF
 from ibr_ref.scene import Camera, DepthImage, Light, checks, limits
 from ibr_ref.scene.documented import documented
 from ibr_ref.scene.limits import Limit, Real, Whole, Word
-
-SHAPES = ("square", "disc", "ellipse")
-METHODS = ("shader", "software")
 
 READ_BY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("alpha", "beta", "gamma", "delta", "min_width"), ("square", "disc")),
@@ -39,7 +37,7 @@ LIMITS: dict[str, Limit] = {
     "low_pass": Real(low=0.1, high=8.0),
     "cutoff": Real(low=1.0, high=MOST_CUTOFF),
     "depth_tolerance": Real(low=0.0, high=1.0),
-    "method": Word(METHODS),
+    "method": Word(DRAWN_BY),
     "max_atlas_size": Whole(1, 65536),
 }
 """Of the fields of `Params`, each by itself."""

@@ -6,16 +6,17 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from ibr_ref.choices import CAMERA_AXES, DEPTHS_ALONG, PIXEL_CENTERS, POSES
 from ibr_ref.scene import checks
 
 if TYPE_CHECKING:
     from ibr_ref.io.depth_sets.view import View
 
 CHOICES = {
-    "convention": ("opencv", "opengl"),
-    "poses": ("camera_to_world", "world_to_camera"),
-    "along": ("axis", "ray"),
-    "pixel_centers": ("integer", "half"),
+    "convention": CAMERA_AXES,
+    "poses": POSES,
+    "along": DEPTHS_ALONG,
+    "pixel_centers": PIXEL_CENTERS,
 }
 """The values of options that are words."""
 
