@@ -11,8 +11,7 @@ import pytest
 from pydantic import BaseModel
 
 import ibr_ref
-from ibr_ref import methods
-from ibr_ref.displacement import inputs as displacement_inputs
+from ibr_ref import choices, methods
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.schema import adapter, describe, read, schema, schema_text
 from ibr_ref.oracle.schema.base import values
@@ -20,7 +19,6 @@ from ibr_ref.oracle.schema.displacement import DisplacementParams
 from ibr_ref.oracle.schema.shadows import ShadowsParams
 from ibr_ref.oracle.schema.splatting import SplattingParams
 from ibr_ref.shadows import inputs as shadows_inputs
-from ibr_ref.splatting import inputs as splatting_inputs
 
 MODELS = {"displacement": DisplacementParams, "splatting": SplattingParams, "shadows": ShadowsParams}
 METHODS = {name: getattr(ibr_ref, name) for name in MODELS}
@@ -89,15 +87,15 @@ def test_no_case_is_made_of_what_no_referee_judges(method: str, change: dict[str
 @pytest.mark.parametrize(
     ("model", "field", "allowed"),
     [
-        (DisplacementParams, "interval", displacement_inputs.INTERVALS),
-        (DisplacementParams, "faces", displacement_inputs.FACES),
-        (DisplacementParams, "depth", displacement_inputs.DEPTHS),
+        (DisplacementParams, "interval", choices.INTERVALS),
+        (DisplacementParams, "faces", choices.FACES),
+        (DisplacementParams, "depth", choices.DEPTHS),
         (DisplacementParams, "method", methods.named("displacement").judged[1]),
-        (SplattingParams, "shape", splatting_inputs.SHAPES[:2]),
-        (ShadowsParams, "content", shadows_inputs.CONTENTS),
-        (ShadowsParams, "policy", shadows_inputs.POLICIES),
+        (SplattingParams, "shape", choices.SHAPES[:2]),
+        (ShadowsParams, "content", choices.CONTENTS),
+        (ShadowsParams, "policy", choices.POLICIES),
         (ShadowsParams, "accumulation", shadows_inputs.ACCUMULATIONS),
-        (ShadowsParams, "method", shadows_inputs.METHODS),
+        (ShadowsParams, "method", choices.SHADOWED_BY),
         (ShadowsParams, "light_samples", shadows_inputs.SAMPLE_COUNTS),
     ],
 )
