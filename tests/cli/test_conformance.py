@@ -67,6 +67,8 @@ def test_a_conformance_run(run: Run, tmp_path: Path) -> None:
     assert "2 cases: 2 PASS" in page
     assert page.count('<tr class="pass">') == 2
     assert "8, measured (" in page
+    judged_by = lines[2].partition(" on ")[2].partition(", ")[0]
+    assert page.count(f">{judged_by}") == 1, "the device of all cases is said once"
     assert "None of those that are known." in page
     assert (document["measured"]["varyings"], document["faults"], document["unmeasured"]) == ("snapped", {}, {})
     numbers = tmp_path / "out" / "conformance.json"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
@@ -104,8 +105,19 @@ def run_page(entries: Sequence[Entry], facts: Facts | None = None) -> str:
     outcomes = [str(each.verdict.outcome) for each in entries]
     counts = ", ".join(f"{outcomes.count(o)} {o}" for o in dict.fromkeys(sorted(outcomes)))
     return template("run.html").render(
-        entries=entries, facts=facts, counts=counts, style=asset("page.css"), script=asset("run.js")
-    )  # fmt: skip
+        entries=entries,
+        facts=facts,
+        usual=_usual_device(entries) if facts else None,
+        counts=counts,
+        style=asset("page.css"),
+        script=asset("run.js"),
+    )
+
+
+def _usual_device(entries: Sequence[Entry]) -> str | None:
+    """The one that most cases were judged by: it is said once, above the table."""
+    devices = Counter(each.verdict.device for each in entries if each.verdict.device)
+    return max(devices, key=lambda device: devices[device], default=None)
 
 
 def _thumbnails(examination: Examination) -> str:
