@@ -8,15 +8,15 @@ port comes first. The table of all that FILE has is Markdown.
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from statistics import median
 from typing import Any
 
+from ibr_ref.bench import json_lines
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.faults.kinds import Mutant
@@ -109,8 +109,7 @@ def visible(method: str) -> list[Mutant]:
 
 def rows_of(file: Path) -> list[Row]:
     """What a run before has written down."""
-    lines = file.read_text("utf-8").splitlines() if file.exists() else []
-    return [Row(**json.loads(line)) for line in lines]
+    return [Row(**fields) for fields in json_lines.read(file)]
 
 
 def run(file: Path, wanted: Sequence[str], seconds: float, shrinking: float) -> None:
@@ -119,9 +118,7 @@ def run(file: Path, wanted: Sequence[str], seconds: float, shrinking: float) -> 
     for method, mutant in _in_turn({name: visible(name) for name in wanted}):
         if (method, mutant.name) in done:
             continue
-        row = hunted(method, mutant, seconds, shrinking)
-        with file.open("a", encoding="utf-8") as lines:
-            lines.write(json.dumps(asdict(row)) + "\n")
+        json_lines.append(file, hunted(method, mutant, seconds, shrinking))
 
 
 def _in_turn(ports: dict[str, list[Mutant]]) -> Iterator[tuple[str, Mutant]]:

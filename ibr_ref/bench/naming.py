@@ -9,18 +9,18 @@ a stage, each of which shows by itself. The table of all that FILE has is Markdo
 from __future__ import annotations
 
 import argparse
-import json
 import time
 import zlib
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ibr_ref.bench import json_lines
 from ibr_ref.oracle.cases import Case, build, names
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.faults.kinds import Mutant
@@ -98,11 +98,7 @@ def _wrong(case: Case, port: type[Any], *, picture: bool) -> tuple[Handed, Judge
 
 def rows_of(file: Path) -> list[Row]:
     """What a run before has written down."""
-    lines = file.read_text("utf-8").splitlines() if file.exists() else []
-    read = map(json.loads, lines)
-    return [
-        Row(**{**fields, "named": tuple(fields["named"]), "pair": tuple(fields.get("pair", ()))}) for fields in read
-    ]
+    return [Row(**fields) for fields in json_lines.read(file)]
 
 
 def run(file: Path, wanted: Sequence[str], *, picture: bool, seconds: float, pairs: int) -> None:
@@ -118,9 +114,7 @@ def run(file: Path, wanted: Sequence[str], *, picture: bool, seconds: float, pai
             return
         if (name, mutant.name, picture) in done or not mutant.applies(_built(name).system):
             continue
-        row = named(_built(name), mutant, picture=picture, pair=pair)
-        with file.open("a", encoding="utf-8") as lines:
-            lines.write(json.dumps(asdict(row)) + "\n")
+        json_lines.append(file, named(_built(name), mutant, picture=picture, pair=pair))
 
 
 _built = cache(build)

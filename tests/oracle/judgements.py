@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from ibr_ref.oracle.accept.bytes import color_bytes
+from ibr_ref.oracle.cases import Case
+from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.kinds import Variant
-from ibr_ref.oracle.judgement import Judgement
+from ibr_ref.oracle.judgement import Explains, Judgement
+from ibr_ref.oracle.referees import referee
+from ibr_ref.oracle.trials import judge
 
 Arrays = dict[str, np.ndarray]
 
@@ -39,3 +44,16 @@ def complaints(judgements: list[Judgement]) -> list[str]:
 
 def first_wrong(judgements: list[Judgement]) -> str | None:
     return next((j.stage for j in judgements if j.wrong.any()), None)
+
+
+def named(case: Case, arrays: Arrays) -> list[str]:
+    """What a FAIL names, by ieee32: the causes of the first wrong stage, or of the picture where that is all there is."""
+    judge_of = referee(case.method)
+    assert isinstance(judge_of, Explains)
+    wrong = next((j for j in judge(case, arrays, IEEE32, to_first_wrong=True) if j.wrong.any()), None)
+    if wrong is None:
+        pytest.skip("not visible on this case")
+    found = judge_of.causes(case, IEEE32, arrays, wrong)
+    assert found is not None
+    assert found.given_up_after is None
+    return [cause.name for cause in found.causes]

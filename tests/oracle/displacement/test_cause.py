@@ -10,11 +10,11 @@ import pytest
 
 from ibr_ref.oracle.arithmetic.device import Policy
 from ibr_ref.oracle.cases import Case
-from ibr_ref.oracle.device import IEEE32
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.oracle.programs.displacement import Port
 from ibr_ref.oracle.referees.moved import with_light, with_params
-from tests.oracle.displacement.drawn import REFEREE, Arrays, case, draw, image
+from tests.oracle.displacement.drawn import case, draw, image
+from tests.oracle.judgements import named
 
 STAGED = (
     "height scale in half precision",
@@ -44,23 +44,12 @@ PICTURED = (
 """Of every stage, some that show at few pixels, or by little."""
 
 
-def named(name: str, arrays: Arrays) -> list[str]:
-    judgements = REFEREE.judge_stages(case(name), IEEE32, arrays, to_first_wrong=True)
-    wrong = next((j for j in judgements if j.wrong.any()), None)
-    if wrong is None:
-        pytest.skip("not visible on this case")
-    found = REFEREE.causes(case(name), IEEE32, arrays, wrong)
-    assert found is not None
-    assert found.given_up_after is None
-    return [cause.name for cause in found.causes]
-
-
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("mutant", STAGED)
 def test_the_bug_is_named(mutant: str) -> None:
     name = "displacement-slope"
     port = next(m.port for m in MUTANTS if m.name == mutant)
-    assert mutant in named(name, draw(name, Policy(), port))
+    assert mutant in named(case(name), draw(name, Policy(), port))
 
 
 @pytest.mark.sampled(2)
@@ -77,7 +66,7 @@ def test_the_bug_is_named(mutant: str) -> None:
 def test_a_right_port_with_another_parameter_is_named_so(name: str, taken: dict[str, Any]) -> None:
     what = case(name)
     arrays = Port(what.scene, replace(what.params, **taken), Policy(), {}).render()
-    found = named(name, arrays)
+    found = named(case(name), arrays)
     (field, value), *_ = taken.items()
     assert found == [f"{field} = {value}"]
 
@@ -91,7 +80,7 @@ def test_a_right_port_with_another_parameter_is_named_so(name: str, taken: dict[
 )
 def test_a_number_that_was_not_guessed_is_found(name: str, value: float, other: Case) -> None:
     """A bound up to where the next pixel jumps."""
-    (found,) = named("displacement-slope", Port(other.scene, other.params, Policy(), {}).render())
+    (found,) = named(case("displacement-slope"), Port(other.scene, other.params, Policy(), {}).render())
     told, _, looks_like = found.partition(" looks like ")
     assert (told, float(looks_like)) == (name, pytest.approx(value, rel=0.01))
 
@@ -101,13 +90,13 @@ def test_two_bugs_of_which_neither_explains_all_are_named_together() -> None:
     name, a, b = "displacement-slope", "ambient off by 2 %", "gradient without 1/2"
     kinds = [next(m.port for m in MUTANTS if m.name == each) for each in (a, b)]
     both = draw(name, Policy(), type("_Both", tuple(kinds), {}))
-    assert {f"{a} and {b}", f"{b} and {a}"} & {*named(name, both)}
+    assert {f"{a} and {b}", f"{b} and {a}"} & {*named(case(name), both)}
 
 
 def test_another_place_of_the_light_is_named() -> None:
     """Below the polygon, where all such places are the same."""
     other = with_light(case("displacement-slope"), position=(1.0, 1.5, -1.4))
-    found = named("displacement-slope", Port(other.scene, other.params, Policy(), {}).render())
+    found = named(case("displacement-slope"), Port(other.scene, other.params, Policy(), {}).render())
     assert "light.position = (1, 1.5, -1.4)" in found
 
 
@@ -116,13 +105,13 @@ def test_what_a_bug_and_a_number_explain_is_named_by_both() -> None:
     name = "displacement-relief"
     other = with_params(case(name), linear_steps=25)
     arrays = Port(other.scene, other.params, Policy(), {}).render()
-    assert named(name, arrays) == ["step of 1/(N + 1)", "linear_steps = 25"]
+    assert named(case(name), arrays) == ["step of 1/(N + 1)", "linear_steps = 25"]
 
 
 def test_nor_is_one_that_no_suspect_has() -> None:
     what = case("displacement-slope")
     arrays = Port(what.scene, replace(what.params, linear_steps=17), Policy(), {}).render()
-    assert named("displacement-slope", arrays) == []
+    assert named(case("displacement-slope"), arrays) == []
 
 
 def test_of_a_few_wrong_pixels_no_parameter_is_named() -> None:
@@ -132,7 +121,7 @@ def test_of_a_few_wrong_pixels_no_parameter_is_named() -> None:
     steep = np.array(arrays["march.steep"])
     at = np.argwhere(np.asarray(arrays["march.hit_index"]) > 0)[:3]
     steep[tuple(at.T)] = ~steep[tuple(at.T)]
-    assert named("displacement-slope", {**arrays, "march.steep": steep}) == []
+    assert named(case("displacement-slope"), {**arrays, "march.steep": steep}) == []
 
 
 class _Unknown(Port):
@@ -146,16 +135,7 @@ class _Unknown(Port):
 @pytest.mark.long
 def test_a_bug_that_is_not_known_has_no_name() -> None:
     name = "displacement-slope"
-    assert named(name, draw(name, Policy(), _Unknown)) == []
-
-
-def named_by_the_picture(name: str, arrays: Arrays) -> list[str]:
-    wrong = REFEREE.judge_image(case(name), IEEE32, arrays)
-    assert wrong.wrong.any()
-    found = REFEREE.causes(case(name), IEEE32, arrays, wrong)
-    assert found is not None
-    assert found.given_up_after is None
-    return [cause.name for cause in found.causes]
+    assert named(case(name), draw(name, Policy(), _Unknown)) == []
 
 
 @pytest.mark.long
@@ -163,13 +143,13 @@ def named_by_the_picture(name: str, arrays: Arrays) -> list[str]:
 def test_a_picture_by_itself_names_the_bug(mutant: str) -> None:
     name = "displacement-slope"
     port = next(m.port for m in MUTANTS if m.name == mutant)
-    assert mutant in named_by_the_picture(name, image(draw(name, Policy(), port)))
+    assert mutant in named(case(name), image(draw(name, Policy(), port)))
 
 
 @pytest.mark.long
 def test_nor_has_it_by_the_picture() -> None:
     name = "displacement-slope"
-    assert named_by_the_picture(name, image(draw(name, Policy(), _Unknown))) == []
+    assert named(case(name), image(draw(name, Policy(), _Unknown))) == []
 
 
 def test_of_some_pixels_a_port_draws_the_same() -> None:

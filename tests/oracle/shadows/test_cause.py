@@ -15,8 +15,8 @@ from ibr_ref.oracle.faults.shadows.vectors import lit_from
 from ibr_ref.oracle.programs.shadows.raster import Raster
 from ibr_ref.oracle.referees.moved import with_light, with_params, with_scene
 from ibr_ref.oracle.referees.shadows.inputs import Inputs
-from tests.oracle.judgements import picture
-from tests.oracle.shadows.judged import REFEREE, Arrays, case, drawn
+from tests.oracle.judgements import named, picture
+from tests.oracle.shadows.judged import Arrays, case, drawn
 
 BOX = "shadows-box"
 STAGED = {
@@ -36,16 +36,6 @@ STAGED = {
 """One of each stage and kind, and where it shows."""
 
 
-def named(name: str, arrays: Arrays) -> list[str]:
-    judgements = REFEREE.judge_stages(case(name), IEEE32, arrays, to_first_wrong=True) if len(arrays) > 2 else []
-    judgements.append(REFEREE.judge_image(case(name), IEEE32, arrays))
-    wrong = next(j for j in judgements if j.wrong.any())
-    found = REFEREE.causes(case(name), IEEE32, arrays, wrong)
-    assert found is not None
-    assert found.given_up_after is None
-    return [cause.name for cause in found.causes]
-
-
 def broken(name: str, mutant: str) -> Arrays:
     return drawn(name, port=next(m.port for m in MUTANTS if m.name == mutant))
 
@@ -53,12 +43,12 @@ def broken(name: str, mutant: str) -> Arrays:
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("mutant", STAGED)
 def test_the_bug_is_named(mutant: str) -> None:
-    assert named(STAGED[mutant], broken(STAGED[mutant], mutant)) == [mutant]
+    assert named(case(STAGED[mutant]), broken(STAGED[mutant], mutant)) == [mutant]
 
 
 @pytest.mark.long
 def test_the_bug_is_named_by_the_picture_alone() -> None:
-    assert named(BOX, picture(broken(BOX, "resolve-bgr"))) == ["resolve-bgr"]
+    assert named(case(BOX), picture(broken(BOX, "resolve-bgr"))) == ["resolve-bgr"]
 
 
 DEPTHS, NEAREST = "shadows-depths", "shadows-nearest"
@@ -82,11 +72,11 @@ def taken(other: Case) -> Arrays:
     ],
 )
 def test_a_right_port_with_another_number_is_named_so(name: str, other: Case, says: list[str]) -> None:
-    assert named(name, taken(other)) == says
+    assert named(case(name), taken(other)) == says
 
 
 def test_nor_is_one_that_no_suspect_has() -> None:
-    assert named(NEAREST, taken(with_params(case(NEAREST), map_samples=7))) == []
+    assert named(case(NEAREST), taken(with_params(case(NEAREST), map_samples=7))) == []
 
 
 @pytest.mark.parametrize(
@@ -98,13 +88,13 @@ def test_nor_is_one_that_no_suspect_has() -> None:
 )
 def test_two_bugs_of_which_neither_explains_all_are_named_together(name: str, a: str, b: str) -> None:
     kinds = [next(m.port for m in MUTANTS if m.name == each) for each in (a, b)]
-    (found,) = named(name, drawn(name, port=type("_Both", tuple(kinds), {})))
+    (found,) = named(case(name), drawn(name, port=type("_Both", tuple(kinds), {})))
     assert found in (f"{a} and {b}", f"{b} and {a}")
 
 
 @pytest.mark.parametrize("place", [(0.2, 4.0, -0.15), (0.35, -0.2, 3.5)], ids=["listed", "found"])
 def test_the_light_of_colours_alone_is_named(place: tuple[float, float, float]) -> None:
-    (found,) = named(BOX, drawn(BOX, port=lit_from(Port, np.array(place))))
+    (found,) = named(case(BOX), drawn(BOX, port=lit_from(Port, np.array(place))))
     assert found.startswith("light.position of colours ")
     assert found.endswith(f"({', '.join(f'{x:g}' for x in place)})")
 
@@ -121,7 +111,7 @@ class _Unknown(Port):
 
 
 def test_a_bug_that_is_not_known_has_no_name() -> None:
-    assert named(BOX, drawn(BOX, port=_Unknown)) == []
+    assert named(case(BOX), drawn(BOX, port=_Unknown)) == []
 
 
 def test_what_a_fault_does_not_change_is_shared() -> None:

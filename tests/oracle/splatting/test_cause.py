@@ -14,7 +14,7 @@ from ibr_ref.oracle.faults.splatting import MUTANTS, Port
 from ibr_ref.oracle.faults.splatting.vectors import lit_from, seen_from
 from ibr_ref.oracle.referees.moved import with_light, with_params
 from ibr_ref.oracle.referees.splatting import cause
-from tests.oracle.judgements import in_bytes, picture
+from tests.oracle.judgements import in_bytes, named, picture
 from tests.oracle.splatting.judged import REFEREE, Arrays, case, drawn
 
 LAMP = "splatting-lamp"
@@ -32,39 +32,29 @@ STAGED = (
 PICTURED = ("upside-down", "color-of-the-pixel-to-the-left")
 
 
-def named(arrays: Arrays) -> list[str]:
-    judgements = REFEREE.judge_stages(case(LAMP), IEEE32, arrays, to_first_wrong=True) if len(arrays) > 2 else []
-    judgements.append(REFEREE.judge_image(case(LAMP), IEEE32, arrays))
-    wrong = next(j for j in judgements if j.wrong.any())
-    found = REFEREE.causes(case(LAMP), IEEE32, arrays, wrong)
-    assert found is not None
-    assert found.given_up_after is None
-    return [cause.name for cause in found.causes]
-
-
 def broken(name: str) -> Arrays:
     return drawn(LAMP, port=next(m.port for m in MUTANTS if m.name == name))
 
 
 @pytest.mark.parametrize("mutant", STAGED)
 def test_the_bug_is_named(mutant: str) -> None:
-    assert named(broken(mutant)) == [mutant]
+    assert named(case(LAMP), broken(mutant)) == [mutant]
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("mutant", PICTURED)
 def test_the_bug_is_named_by_the_picture_alone(mutant: str) -> None:
-    assert named(picture(broken(mutant))) == [mutant]
+    assert named(case(LAMP), picture(broken(mutant))) == [mutant]
 
 
 def test_the_eye_of_highlights_at_the_origin_is_named() -> None:
     """Highlights for the origin."""
-    assert "eye of the highlights = (0, 0, 0)" in named(drawn(LAMP, port=seen_from(Port, np.zeros(3))))
+    assert "eye of the highlights = (0, 0, 0)" in named(case(LAMP), drawn(LAMP, port=seen_from(Port, np.zeros(3))))
 
 
 def test_what_looks_alike_is_named_together() -> None:
     """Bytes that are rounded down and bytes over 256 are the same where no byte is 255."""
-    assert named(broken("bytes-over-256")) == ["truncated-bytes", "bytes-over-256"]
+    assert named(case(LAMP), broken("bytes-over-256")) == ["truncated-bytes", "bytes-over-256"]
 
 
 def taken(other: Case) -> Arrays:
@@ -84,7 +74,7 @@ def taken(other: Case) -> Arrays:
     ],
 )
 def test_a_right_port_with_another_number_is_named_so(other: Case, says: str) -> None:
-    assert named(taken(other)) == [says]
+    assert named(case(LAMP), taken(other)) == [says]
 
 
 @pytest.mark.parametrize(
@@ -93,11 +83,11 @@ def test_a_right_port_with_another_number_is_named_so(other: Case, says: str) ->
     ids=["whole", "two"],
 )
 def test_nor_are_a_whole_number_that_no_suspect_has_and_two_at_once(other: Case) -> None:
-    assert named(taken(other)) == []
+    assert named(case(LAMP), taken(other)) == []
 
 
 def test_a_bug_that_is_a_number_is_named_with_it() -> None:
-    found = named(taken(with_light(case(LAMP), exponent=61)))
+    found = named(case(LAMP), taken(with_light(case(LAMP), exponent=61)))
     assert found == ["exponent-one-more", "light.exponent = 61"]
 
 
@@ -111,7 +101,7 @@ def both(a: str, b: str) -> Arrays:
     ("a", "b"), [("half-pixel-shift", "colors-encoded-in-the-shader"), ("half-pixel-shift", "width-as-integer")]
 )
 def test_two_bugs_of_which_neither_explains_all_are_named_together(a: str, b: str) -> None:
-    (found,) = named(both(a, b))
+    (found,) = named(case(LAMP), both(a, b))
     assert found in (f"{a} and {b}", f"{b} and {a}")
 
 
@@ -165,7 +155,7 @@ class _Unknown(Port):
 
 @pytest.mark.parametrize("kept", [lambda arrays: arrays, in_bytes], ids=["stages", "bytes"])
 def test_a_bug_that_is_not_known_has_no_name(kept: Any) -> None:
-    assert named(kept(drawn(LAMP, port=_Unknown))) == []
+    assert named(case(LAMP), kept(drawn(LAMP, port=_Unknown))) == []
 
 
 def test_what_a_fault_does_not_change_is_shared() -> None:
