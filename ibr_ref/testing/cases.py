@@ -62,7 +62,10 @@ def displacement_cases(draw: DrawFn, search: str | None = None) -> Case:
 def splatting_cases(draw: DrawFn, shape: str | None = None) -> Case:
     """Splatting of one to three depth images, by all its parameters."""
     found = draw(splatting.drawn())
-    params = found.params if shape is None else replace(found.params, shape=shape)
+    params = found.params
+    if shape is not None:
+        most = max(params.max_width, 4.0) if shape == "ellipse" else params.max_width  # filters need room
+        params = replace(params, shape=shape, max_width=most)
     light = None if found.scene.light is None else _with_a_power(found.scene.light)
     return splatting_case("drawn", "own", ABOUT, PROFILE, replace(found.scene, light=light), params)
 
