@@ -215,7 +215,7 @@ class Bounds(Ways):
         x, device = self.of(x), self.device
         value = np.exp(x.value)
         units = device.exponential * (1.0 + np.abs(x.value) / np.log(2.0)) + 2.0 * device.operation * np.abs(x.value)
-        high = np.exp(x.high)
+        high = np.exp(np.minimum(x.high, 0.0))
         return Number(self, value, high - value + 2.0 * units * UNIT * high, {}, x.lane)
 
     def totals(self, terms: Any, of: Ints, count: int) -> Number:
@@ -244,6 +244,12 @@ class Bounds(Ways):
             size = summed((w + off) * (np.abs(x.value) + x.deviation))
             many, unit = np.bincount(of, minlength=count), self.device.operation * UNIT
             error = (moved + (2.0 * many + 1.0) * unit * size) / least
+            error = np.where(np.isnan(error) & (many > 0), np.inf, error)
+            if np.all(w >= 0.0):  # whatever they are, no average lies beyond all of its terms
+                farthest, largest = np.zeros((2, count))
+                np.maximum.at(farthest, of, np.abs(x.value - value[of]) + x.deviation)
+                np.maximum.at(largest, of, np.abs(x.value) + x.deviation)
+                error = np.fmin(error, farthest + (2.0 * many + 2.0) * unit * largest)
         return Number(self, value, error + self.device.quotient * UNIT * (np.abs(value) + error))
 
     # --- The device's own parts ----------------------------------------------------------------------------------------

@@ -218,13 +218,14 @@ class Ellipses(Raster):
     def second_pass(self, vertices: dict[str, Any], winner: Ints) -> Sums:
         """Weights, counts and colours of all pixels, of the nearest splats (H, W) of the first pass."""
         splats, nearest = self.live(vertices), winner.reshape(-1)
-        distance = vertices["vertex.distance"]
+        distance, images = vertices["vertex.distance"], vertices["vertex.source"][:, 0]
         found = [(np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 3)))]
         for _, batch in self.batches(splats):
             fragments = self.fragments(batch)
             pixel = fragments.row * self.scene.camera.width + fragments.column
-            at = nearest[pixel]
-            near = self.blends(distance[batch.vertex[fragments.splat]], distance[np.maximum(at, 0)]) & (at >= 0)
+            at, vertex = nearest[pixel], batch.vertex[fragments.splat]
+            near = self.blends(distance[vertex], distance[np.maximum(at, 0)]) | (self.names(images, vertex) == at)
+            near &= at >= 0
             kept = Fragments._make(values[near] for values in fragments)
             weight = self.weight(batch, kept)
             found.append((pixel[near], weight, vertices["vertex.color"][batch.vertex[kept.splat]]))
