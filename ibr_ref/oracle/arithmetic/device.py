@@ -309,8 +309,9 @@ class Arithmetic(OneWay):
         return result
 
     def mean(self, weights: Floats, x: Floats, of: NDArray[np.int64], count: int) -> Floats:
-        """(count,) weighted averages of what each row has."""
-        return self.divide(self.totals(self.multiply(weights, x), of, count), self.totals(weights, of, count))
+        """(count,) weighted averages of what each row has; 0 where it has nothing."""
+        whole = self.totals(weights, of, count)
+        return self.divide(self.totals(self.multiply(weights, x), of, count), np.where(whole == 0.0, 1.0, whole))
 
     def weight(self, fraction: Floats) -> Floats:
         """A bilinear weight as the texture unit has it."""

@@ -98,8 +98,8 @@ OF_SYSTEMS = {("splatting", "ellipse"): ELLIPSES}
 
 
 def system_of(method: str, params: Any) -> str:
-    """What a case is drawn by: the value of the field that the method's systems are chosen by."""
-    return str(getattr(params, named(method).judged[0]))
+    """What a case is drawn by: the value of the field that systems are chosen by; nothing where the method has one alone."""
+    return str(getattr(params, named(method).judged[0], ""))
 
 
 def reads_of(method: str, system: str = "") -> dict[str, tuple[str, ...]]:
