@@ -124,12 +124,13 @@ _JUDGED_SEARCHES = (
     "donnelly",
     "maximum_mipmap",
 )
+_JUDGED_SHAPES = ("square", "disc", "ellipse")
 _JUDGED_SHADOWS = ("warp", "direct", "grid", "pcss")
 
 # fmt: off
 _METHODS = {method.name: method for method in (
     _own("displacement", 1, "Protruded displacement mapping", "Yoo & Han 2006", ("method", _JUDGED_SEARCHES)),
-    _own("splatting", 2, "Splatting of depth images", "Lee & Park 2006", ("shape", ("square", "disc")), ("normals",)),
+    _own("splatting", 2, "Splatting of depth images", "Lee & Park 2006", ("shape", _JUDGED_SHAPES), ("normals",)),
     _own("shadows", 3, "Shadows by image warping", "Kang & Ihm 2002", ("method", _JUDGED_SHADOWS), ("maps",)),
 )}
 # fmt: on

@@ -33,7 +33,11 @@ STAGES: dict[str, StageArray] = {
         shape=("V",), dtype="float64", meaning="window depth", remark="NaN where dropped", discarded=_NAN
     ),
     "vertex.width": StageArray(
-        shape=("V",), dtype="float64", meaning="W_s, clamped, pixels", remark="0 where dropped", discarded=0.0
+        shape=("V",),
+        dtype="float64",
+        meaning="W_s, clamped, or the larger side of an ellipse's box, pixels",
+        remark="0 where dropped",
+        discarded=0.0,
     ),
     "vertex.color": StageArray(
         shape=("V", 3), dtype="float64", meaning="lit colour; without a light, the stored one", discarded=OWN

@@ -7,6 +7,7 @@ undefined, `oracle.undefined`. They shrink towards one pixel of one flat polygon
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from hypothesis import assume
 from hypothesis import strategies as st
@@ -18,6 +19,7 @@ from ibr_ref.oracle.cases.splatting import case as splatting_case
 from ibr_ref.scene import Camera, Light, checks
 from ibr_ref.shadows import prepare
 from ibr_ref.testing import displacement, shadows, splatting
+from ibr_ref.testing.numbers import real
 
 PROFILE = "ieee32"
 ABOUT = "Drawn at random."
@@ -59,10 +61,25 @@ def displacement_cases(draw: DrawFn, search: str | None = None) -> Case:
 
 
 @st.composite
+def _ellipses(draw: DrawFn, most: float) -> dict[str, float]:
+    """Of splats that are averaged; a box has room for the filter."""
+    found = {
+        "footprint": draw(real(0.1, 2.0, 0.5)),
+        "low_pass": draw(real(0.1, 1.5, 0.5)),
+        "cutoff": draw(real(1.0, 4.0, 2.0)),
+        "depth_tolerance": draw(real(0.0, 0.3, 0.0, 0.01)),
+    }
+    return {**found, "max_width": max(most, 2.5 * found["cutoff"] * found["low_pass"])}
+
+
+@st.composite
 def splatting_cases(draw: DrawFn, shape: str | None = None) -> Case:
     """Splatting of one to three depth images, by all its parameters."""
     found = draw(splatting.drawn())
-    params = found.params if shape is None else replace(found.params, shape=shape)
+    params = found.params
+    if shape is not None:
+        more: dict[str, Any] = draw(_ellipses(params.max_width)) if shape == "ellipse" else {}
+        params = replace(params, shape=shape, **more)
     light = None if found.scene.light is None else _with_a_power(found.scene.light)
     return splatting_case("drawn", "own", ABOUT, PROFILE, replace(found.scene, light=light), params)
 

@@ -13,7 +13,7 @@ from ibr_ref.oracle.device import LOOSEST, Device
 from ibr_ref.oracle.files import Submission, submission_from_arrays
 from ibr_ref.oracle.judgement import Explains, Handed, Judgement, Recognizes
 from ibr_ref.oracle.referees import referee
-from ibr_ref.oracle.referees.reads import reads_of
+from ibr_ref.oracle.referees.reads import reads_of, system_of
 from ibr_ref.oracle.trials import FREEDOMS, judge
 
 Port = Callable[[Case], Submission]
@@ -173,7 +173,7 @@ def _wrong(case: Case, submission: Submission, declaration: Declaration, to_firs
 def _whole(case: Case, handed: Handed) -> bool:
     """Whether every array is there that the picture is made of: where each is right, so is the picture."""
     expected = {"color", "depth", *case.frame.stages}
-    return expected & {*reads_of(case.method)} <= {*handed}
+    return expected & {*reads_of(case.method, system_of(case.method, case.params))} <= {*handed}
 
 
 def _device(declaration: Declaration) -> Device:

@@ -46,8 +46,15 @@ class _Splatting(_Change, splatting.Port):
         own = [atlas["atlas.normal"][p][y : y + h, x : x + w] for p, x, y, w, h in atlas["atlas.rects"].tolist()]
         vertices = self._all(self.vertices(atlas, own))
         raster = self._all(self.raster(vertices))
-        color = self.resolve(vertices["vertex.color"], raster["raster.splat"])
+        raster, color = self.shaded_picture(vertices, raster)
+        raster = {n: self._changed(n, a) if n in ("raster.weight", "raster.blended") else a for n, a in raster.items()}
         return {**atlas, **vertices, **raster, "color": color, "depth": raster["raster.depth"]}
+
+    def averages(self, color: Any, weight: Any) -> Any:
+        changed = self._changed("raster.weight", weight)
+        with np.errstate(invalid="ignore"):
+            scale = np.where(changed > 0.0, weight / changed, 1.0).reshape(-1, 1)
+        return super().averages(np.minimum(color * scale, 1.0), changed)
 
     def _all(self, arrays: Arrays) -> Arrays:
         return {name: self._changed(name, array) for name, array in arrays.items()}

@@ -23,9 +23,13 @@ from tests.oracle.tampered import Arrays, tampered
 CASES = {
     "displacement": ["displacement-tiles"],
     "splatting": ["splatting-lamp"],
+    "splatting, ellipses": ["splatting-ellipses"],
     "shadows": ["shadows-pace", "shadows-penumbra"],
 }
-"""Of each method, those that together have all of its arrays; an array is changed in the first that has it."""
+"""Of each method, and of what has a table of its own, those that together have all arrays.
+
+An array is changed in the first that has it.
+"""
 
 
 def _moved(by: float) -> Callable[[Any], Any]:
@@ -73,8 +77,12 @@ WRONG: dict[str, Callable[[Any], Any]] = {
     "vertex.depth": lambda depth: depth * 0.999,
     "vertex.width": lambda width: width + np.where(width > 0.0, 0.5, 0.0),
     "vertex.color": lambda color: 0.5 * color,
+    "vertex.covariance": lambda covariance: covariance * np.array([1.2, 0.9, 0.8]),
+    "vertex.amplitude": lambda amplitude: 0.8 * amplitude + np.linspace(0.0, 0.2, len(amplitude)),
+    "vertex.distance": lambda distance: distance * np.linspace(1.0, 1.1, len(distance)),
     "raster.splat": _winners,
     "raster.depth": lambda depth: np.where(depth < 1.0, 0.9 * depth, 1.0),
+    "raster.weight": lambda weight: 0.9 * weight,
     "vertex.clip": _clip,
     "vertex.patch": lambda patch: patch * np.array([0.98, 1.0, 1.0]),
     "raster.patch": lambda patch: patch * np.array([0.97, 1.0, 1.0]),
@@ -105,7 +113,8 @@ WRONG: dict[str, Callable[[Any], Any]] = {
 NO_CHANGE = {"raster.patch_id", "raster.face", "march.hit_index", "depth"}
 """Which polygon and face, and that nothing was hit: changed alone they say of other pixels what was computed there."""
 
-READS = {method: reads_of(method) for method in methods.names()}
+OF = {**{method: (method, "") for method in methods.names()}, "splatting, ellipses": ("splatting", "ellipse")}
+READS = {method: reads_of(*of) for method, of in OF.items()}
 READ = {m: sorted({n for reads in READS[m].values() for n in reads}) for m in READS}
 PAIRS = [(m, n) for m in READ for n in READ[m] if n not in NO_CHANGE]
 
@@ -195,8 +204,9 @@ def test_a_rounding_is_legal_all_through(method: str, name: str) -> None:
 @pytest.mark.parametrize("method", READS)
 def test_what_is_missing_is_read_through(method: str) -> None:
     for name, reads in READS[method].items():
-        assert fed(method, [name], READS[method]) == tuple(n for n in READS[method] if n in reads)
-        assert fed(method, [name], []) == ()
+        kind, system = OF[method]
+        assert fed(kind, [name], READS[method], system) == tuple(n for n in READS[method] if n in reads)
+        assert fed(kind, [name], [], system) == ()
     if method == "splatting":
         assert fed(method, ["raster.splat"], ["atlas.depth"]) == ("atlas.depth",)
         assert fed(method, ["color"], ["atlas.normal", "raster.splat"]) == ("atlas.normal", "raster.splat")

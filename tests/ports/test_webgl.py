@@ -32,6 +32,8 @@ def drawer() -> Iterator[Any]:
         "displacement-parallax",
         "splatting-lamp",
         "splatting-discs",
+        "splatting-ellipses",
+        "splatting-ovals",
         "shadows-pace",
         "shadows-nearest",
         "shadows-penumbra",

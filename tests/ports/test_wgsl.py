@@ -20,6 +20,8 @@ CASES = [
     "displacement-parallax",
     "splatting-lamp",
     "splatting-discs",
+    "splatting-ellipses",
+    "splatting-ovals",
     "shadows-soft",
     "shadows-pace",
     "shadows-direct",

@@ -210,6 +210,48 @@ class Bounds(Ways):
         size = np.abs(result.value) + result.deviation
         return result.off_by(np.where(size > TINY, size * intrinsic, 0.0))
 
+    def exponential(self, x: Any) -> Number:
+        """e^x, of a number <= 0: exp2 of a product."""
+        x, device = self.of(x), self.device
+        value = np.exp(x.value)
+        units = device.exponential * (1.0 + np.abs(x.value) / np.log(2.0)) + 2.0 * device.operation * np.abs(x.value)
+        high = np.exp(np.minimum(x.high, 0.0))
+        return Number(self, value, high - value + 2.0 * units * UNIT * high, {}, x.lane)
+
+    def totals(self, terms: Any, of: Ints, count: int) -> Number:
+        """(count,) sums of the terms (n,) that each row has, in any order; of (n,): whose they are."""
+        terms = self.of(terms)
+        many, value, error = (np.bincount(of, w, count) for w in (None, terms.value, terms.deviation))
+        size = np.bincount(of, np.abs(terms.value) + terms.deviation, count)
+        return Number(self, value, error + many * self.device.operation * UNIT * size)
+
+    def mean(self, weights: Any, x: Any, of: Ints, count: int) -> Number:
+        """(count,) weighted averages of what each row has: numerator and denominator have the same weights.
+
+        Whatever these are: with weights w + e the average moves by sum (x - mean) e / sum (w + e).
+        """
+        weights, x = self.of(weights), self.of(x)
+        w, off = weights.value, weights.deviation
+
+        def summed(terms: Any) -> Any:
+            return np.bincount(of, terms, count)
+
+        with np.errstate(all="ignore"):
+            least = summed(w) - summed(off)
+            least = np.where(least > 0.0, least, np.where(summed(w) > 0.0, 0.0, np.nan))
+            value = summed(w * x.value) / summed(w)
+            moved = summed(np.abs(x.value - value[of]) * off) + summed((w + off) * x.deviation)
+            size = summed((w + off) * (np.abs(x.value) + x.deviation))
+            many, unit = np.bincount(of, minlength=count), self.device.operation * UNIT
+            error = (moved + (2.0 * many + 1.0) * unit * size) / least
+            error = np.where(np.isnan(error) & (many > 0), np.inf, error)
+            if np.all(w >= 0.0):  # whatever they are, no average lies beyond all of its terms
+                farthest, largest = np.zeros((2, count))
+                np.maximum.at(farthest, of, np.abs(x.value - value[of]) + x.deviation)
+                np.maximum.at(largest, of, np.abs(x.value) + x.deviation)
+                error = np.fmin(error, farthest + (2.0 * many + 2.0) * unit * largest)
+        return Number(self, value, error + self.device.quotient * UNIT * (np.abs(value) + error))
+
     # --- The device's own parts ----------------------------------------------------------------------------------------
 
     def weight(self, fraction: Any) -> Number:

@@ -294,6 +294,25 @@ class Arithmetic(OneWay):
             exponent //= 2
         return result
 
+    def exponential(self, x: ArrayLike) -> Floats:
+        """e^x, of a number <= 0."""
+        return self.moved(self.round(np.exp(x)), self.policy.loose)
+
+    def totals(self, terms: Floats, of: NDArray[np.int64], count: int) -> Floats:
+        """(count,) sums of the terms (n,) that each row has, one after another; of (n,): whose they are, growing."""
+        many = np.bincount(of, minlength=count)
+        starts, result = np.cumsum(many) - many, np.zeros(count)
+        for turn in range(many.max(initial=0)):
+            rows = np.flatnonzero(many > turn)
+            at = starts[rows] + (many[rows] - 1 - turn if self.policy.backwards else turn)
+            result[rows] = self.add(result[rows], terms[at]) if turn else terms[at]
+        return result
+
+    def mean(self, weights: Floats, x: Floats, of: NDArray[np.int64], count: int) -> Floats:
+        """(count,) weighted averages of what each row has; 0 where it has nothing."""
+        whole = self.totals(weights, of, count)
+        return self.divide(self.totals(self.multiply(weights, x), of, count), np.where(whole == 0.0, 1.0, whole))
+
     def weight(self, fraction: Floats) -> Floats:
         """A bilinear weight as the texture unit has it."""
         if self.policy.weight_bits is None:

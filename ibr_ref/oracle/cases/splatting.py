@@ -152,6 +152,36 @@ def dust() -> Case:
     return case("dust", "adversarial", about, "ieee32", scene, law)
 
 
+def ellipses() -> Case:
+    """Elliptical weighted averages of measured cameras, with all that bounds them."""
+    eyes, sizes = [(2.5, -2.0, 1.1), (-0.2, -3.1, 0.8)], [(19, 15), (17, 16)]
+    cameras = [measured(eye, size=size, skew=1.5) for eye, size in zip(eyes, sizes, strict=True)]
+    view = measured((1.3, -2.4, 0.8), size=(96, 72), skew=-2.0)
+    light = Light(position=(1.5, -2.5, 2.5), ambient=0.2, diffuse=0.7, specular=0.4, exponent=16)
+    cameras.append(looking((-0.8, -3.2, 0.2), (0.35, -0.75, -0.53), size=(16, 12), vertical_fov=8.0))
+    images = [painted(camera, balls_on_the_ground(camera)) for camera in cameras]
+    scene = Scene(images=images, camera=view, light=light, background=(0.2, 0.31, 0.6))
+    about = (
+        "Measured cameras of balls on the ground, few pixels each, and one that sees it at a grazing angle, as ellipses "
+        "that are averaged: flat ones, ones as large as is allowed, the ground behind a rim."
+    )
+    params = Params(shape="ellipse", footprint=0.6, low_pass=0.45, cutoff=2.2, max_width=21.0, depth_tolerance=0.06)
+    return case("ellipses", "adversarial", about, "ieee32", scene, params)
+
+
+def ovals() -> Case:
+    """Parallel lines of sight, an image given twice, splats of which many are below a pixel."""
+    camera = parallel((0.9, -3.0, 1.5), size=(30, 24), view_height=3.0)
+    image = painted(camera, np.fmin(ball_depths(camera, 0.8), plane_depths(camera, (0.1, 0.05, 1.0), -0.7)))
+    view = parallel((0.55, -0.74, 0.8), size=(64, 48), view_height=3.4)
+    scene = Scene(images=[image, image], camera=view, light=None, background=(0.71, 0.51, 0.2))
+    about = (
+        "Orthographic on either side and unlit: small ellipses, mostly filter, each drawn twice; some before the view."
+    )
+    params = Params(shape="ellipse", footprint=0.45, low_pass=0.6, cutoff=1.7, max_width=9.0, depth_tolerance=0.01)
+    return case("ovals", "adversarial", about, "ieee32", scene, params)
+
+
 def kettle() -> Case:
     """640 x 480, a rig of nine."""
     images = models.depth_rig(models.kettle(), 9, size=300)
@@ -164,7 +194,7 @@ def kettle() -> Case:
 
 CASES: dict[str, Callable[[], Case]] = {
     f"splatting-{build.__name__}": build
-    for build in (ball, lamp, discs, sprites, quads, shelves, terraces, among, dust, kettle)
+    for build in (ball, lamp, discs, sprites, quads, shelves, terraces, among, dust, ellipses, ovals, kettle)
 }
 """By name."""
 

@@ -12,7 +12,7 @@ from ibr_ref.oracle.declaration import NUMBERS as DECLARED
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.files.features import features
 from ibr_ref.oracle.files.fields import field_list, input_table
-from ibr_ref.oracle.referees.reads import reads_of
+from ibr_ref.oracle.referees.reads import reads_of, system_of
 from ibr_ref.oracle.schema import Document
 from ibr_ref.oracle.schema.stages import contract_of
 from ibr_ref.pages import excerpt
@@ -33,7 +33,7 @@ def json_text(value: Any, indent: str = "") -> str:
 
 def _reads(document: Document, name: str) -> str:
     """Those that the case has: a map that is rendered directly is made of no grid."""
-    reads = reads_of(document.method)
+    reads = reads_of(document.method, system_of(document.method, document.params))
     there = {stage.name for stage in document.expected} | {stage.name.rpartition(".")[0] for stage in document.expected}
     return ", ".join(one for one in reads[name if name in reads else name.rpartition(".")[0]] if one in there) or "-"
 

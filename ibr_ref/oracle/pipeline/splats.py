@@ -40,6 +40,8 @@ class Drawn:
     """Drawn by some."""
     twins: Ints | None = None
     """The earliest point that is drawn exactly as this one is; None: not known."""
+    gaussian: Number | None = None
+    """(V, 5) xx, xy, yy, amplitude and distance of ellipses."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,8 +104,7 @@ def contest(program: Any, points: Drawn) -> Contest:
     points = recut(program, points)
     camera = program.scene.camera
     pixels, depth = camera.width * camera.height, program.stored_depth(points.depth)
-    live = np.flatnonzero(points.possible & (points.width.high > 0.0))
-    splats = program.splats(live, [c[live] for c in points.window], points.width[live], points.depth[live])
+    splats = _splats(program, points)
     spans = [_ends(axis) for axis in program.spans(splats)]
     counts = np.prod([np.maximum(stop - first, 0) for first, stop, _, _ in spans], axis=0)
     least, most = np.zeros((2, pixels), np.int64)
@@ -131,6 +132,31 @@ def contest(program: Any, points: Drawn) -> Contest:
     return Contest(pairs.pixel[wins], pairs.splat[wins], result.empty, least, most, depth)
 
 
+def covering(program: Any, points: Drawn, pixels: Ints) -> tuple[Any, Pairs]:
+    """The splats that are drawn, and all pairs of one of them and a pixel that it may cover, of those asked for, growing."""
+    points = recut(program, points)
+    splats = _splats(program, points)
+    spans = [_ends(axis) for axis in program.spans(splats)]
+    counts = np.prod([np.maximum(stop - first, 0) for first, stop, _, _ in spans], axis=0)
+    asked = np.zeros(program.scene.camera.width * program.scene.camera.height, np.bool_)
+    asked[pixels] = True
+    found = [
+        pairs.take(asked[pairs.pixel]) for pairs in _covered(program, splats, spans, counts, points.sure[splats.vertex])
+    ]
+    none = Pairs(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0, np.bool_))
+    fields = ([getattr(p, name) for p in (none, *found)] for name in ("pixel", "splat", "certain"))
+    return splats, Pairs(*(np.concatenate(parts) for parts in fields))
+
+
+def _splats(program: Any, points: Drawn) -> Any:
+    """Those that may be drawn."""
+    live = np.flatnonzero(points.possible & (points.width.high > 0.0))
+    splats = program.splats(live, [c[live] for c in points.window], points.width[live], points.depth[live])
+    if points.gaussian is None:
+        return splats
+    return splats._replace(gaussian=points.gaussian[splats.vertex])
+
+
 def _ends(span: tuple[Number, Number]) -> tuple[Ints, Ints, Ints, Ints]:
     """The first pixel that may be covered, the one after the last; and the same of those that certainly are."""
     first, end = (x.do.of(x) for x in span)
@@ -153,8 +179,8 @@ def _covered(program: Any, splats: Any, spans: Any, counts: Ints, sure: Bools) -
         row, column = top[splat] + step // columns, left[splat] + step % columns
         certain = sure[splat] & (column >= sure_left[splat]) & (column < sure_right[splat])
         certain &= (row >= sure_top[splat]) & (row < sure_bottom[splat])
-        if program.params.shape == "disc":
-            may, must = may_and_must(program.in_disc(splats, Fragments(splat, row, column)))
+        if program.params.shape != "square":
+            may, must = may_and_must(program.inside(splats, Fragments(splat, row, column)))
             certain &= must
             splat, row, column, certain = splat[may], row[may], column[may], certain[may]
         yield Pairs(row * program.scene.camera.width + column, splats.vertex[splat], certain)

@@ -14,6 +14,7 @@ So a picture without them is judged with the case's: any legal code in each texe
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import Any
 
 from ibr_ref.methods import named
 
@@ -52,6 +53,23 @@ SPLATTING: dict[str, tuple[str, ...]] = {
     "depth": ("raster.splat", "raster.depth"),
 }
 
+GAUSSIANS = ("vertex.covariance", "vertex.amplitude", "vertex.distance")
+ELLIPSES: dict[str, tuple[str, ...]] = {
+    **{name: reads for name, reads in SPLATTING.items() if not name.startswith(("raster", "color", "depth"))},
+    "vertex.covariance": ("atlas.rects", "atlas.depth", "atlas.normal"),
+    "vertex.width": ("atlas.rects", "atlas.depth", "atlas.normal"),
+    "vertex.amplitude": ("atlas.rects", "atlas.depth", "atlas.normal"),
+    "vertex.distance": ("atlas.rects", "atlas.depth"),
+    "raster.splat": ("vertex.window", "vertex.depth", "vertex.covariance"),
+    "raster.depth": ("vertex.window", "vertex.depth", "vertex.covariance"),
+    "raster.overdraw": ("vertex.window", "vertex.covariance"),
+    "raster.weight": ("vertex.window", *GAUSSIANS, "raster.splat"),
+    "raster.blended": ("vertex.window", "vertex.covariance", "vertex.distance", "raster.splat"),
+    "color": ("vertex.window", *GAUSSIANS, "vertex.color", "raster.splat", "raster.weight"),
+    "depth": ("raster.splat", "raster.depth"),
+}
+"""Of splats that are averaged."""
+
 SHADOWS: dict[str, tuple[str, ...]] = {
     "maps.positions": (),
     "maps.depths": ("maps.positions",),
@@ -75,15 +93,26 @@ SHADOWS: dict[str, tuple[str, ...]] = {
 """`depth` says which surface a pixel shows, where the case leaves that open; its number goes into nothing."""
 
 
-def reads_of(method: str) -> dict[str, tuple[str, ...]]:
-    """For each array of a method the port's own arrays that it is computed from."""
+OF_SYSTEMS = {("splatting", "ellipse"): ELLIPSES}
+"""Where a system's arrays are made of others than the method's."""
+
+
+def system_of(method: str, params: Any) -> str:
+    """What a case is drawn by: the value of the field that systems are chosen by; nothing where the method has one alone."""
+    return str(getattr(params, named(method).judged[0], ""))
+
+
+def reads_of(method: str, system: str = "") -> dict[str, tuple[str, ...]]:
+    """For each array of a method, by one of its systems, the port's own arrays that it is computed from."""
+    if (method, system) in OF_SYSTEMS:
+        return OF_SYSTEMS[method, system]
     reads: dict[str, tuple[str, ...]] = named(method).reads.open()
     return reads
 
 
-def fed(method: str, arrays: Collection[str], handed: Collection[str]) -> tuple[str, ...]:
+def fed(method: str, arrays: Collection[str], handed: Collection[str], system: str = "") -> tuple[str, ...]:
     """Of what was handed in, all that arrays are computed from: what they read, or what that reads where it is missing."""
-    reads = reads_of(method)
+    reads = reads_of(method, system)
     found: set[str] = set()
     waiting = [name for array in arrays for name in reads[array]]
     while waiting:

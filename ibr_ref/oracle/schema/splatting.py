@@ -20,7 +20,7 @@ from ibr_ref.splatting.references import prepare
 
 
 class SplattingParams(Model):
-    """The law of the width, W_s = alpha / (beta d^2 + gamma d + delta), and how splats are drawn."""
+    """The law of the width, W_s = alpha / (beta d^2 + gamma d + delta), and how splats are drawn; ellipses have no law."""
 
     alpha: float
     beta: float
@@ -30,9 +30,17 @@ class SplattingParams(Model):
     """Pixels."""
     max_width: float
     """Pixels."""
-    shape: Literal["square", "disc"]
+    shape: Literal["square", "disc", "ellipse"]
     max_atlas_size: int
     """Pixels a side of each of the atlas' four pages."""
+    footprint: float = 0.5
+    """shape = "ellipse": standard deviation of a point's Gaussian, in pixels of its reference image."""
+    low_pass: float = 0.5
+    """shape = "ellipse": standard deviation of the filter, in pixels of the picture."""
+    cutoff: float = 2.0
+    """shape = "ellipse": where the Gaussians end, in standard deviations."""
+    depth_tolerance: float = 0.01
+    """shape = "ellipse": share of the nearest splat's distance that those averaged with it may lie behind."""
 
 
 class ImageFile(Model):

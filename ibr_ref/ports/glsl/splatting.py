@@ -24,11 +24,14 @@ import moderngl
 import numpy as np
 
 from ibr_ref.ports.glsl import gl
+from ibr_ref.ports.glsl.splatting_ellipses import Averages
 
 FAST = {"color": (4, "f1")}
 STAGES = {"color": (4, "f4"), "splat": (1, "i4")}
 VARYINGS = {"window": 2, "depth": 1, "width": 1, "color": 3}
 """What transform feedback hands back of a vertex, and how many numbers each has."""
+ELLIPSES = {**VARYINGS, "covariance": 3, "amplitude": 1, "along": 1}
+"""The same of ellipses."""
 CORNERS = {"points": 1, "quads": 4}
 """Vertices a splat, by primitive."""
 
@@ -60,9 +63,14 @@ class Prepared:
     mode: int
     stages: bool
     vertices: dict[str, np.ndarray]
+    averages: Averages | None = None
+    """Of ellipses."""
 
     def draw(self) -> None:
         """Submit a frame: clear, then per reference image its uniforms, its texture and one draw call."""
+        if self.averages is not None:
+            self.averages.draw()
+            return
         self.target.begin()
         self.device.ctx.enable_only(moderngl.DEPTH_TEST | moderngl.PROGRAM_POINT_SIZE)
         self.device.ctx.depth_func = "<"
@@ -78,15 +86,19 @@ class Prepared:
         """The frame that was drawn last."""
         color = self.target.read("color")
         color = color[..., :3] / 255.0 if color.dtype == np.uint8 else color[..., :3].astype(np.float64)
-        depth = self.target.read_depth().astype(np.float64)
+        depth = self.averages.read_depth() if self.averages else self.target.read_depth().astype(np.float64)
         if not self.stages:
             return gl.Frame(color=color, depth=depth)
+        if self.averages:
+            return gl.Frame(color=color, depth=depth, stages=self.vertices | self.averages.stages())
         shown = {"raster.splat": self.target.read("splat")[..., 0], "raster.depth": depth.copy()}
         return gl.Frame(color=color, depth=depth, stages=self.vertices | shown)
 
     def release(self) -> None:
         """Give everything back to the driver."""
         self.target.release()
+        if self.averages:
+            self.averages.release()
         for draw in self.draws:
             for item in draw.owned:
                 item.release()
@@ -123,23 +135,41 @@ class Port:
         """
         self.device.use()
         sizes = self.device.ctx.info["GL_POINT_SIZE_RANGE"]
+        elliptic = params.shape == "ellipse"
         if primitive is None:
-            primitive = "points" if sizes[0] <= params.min_width <= params.max_width <= sizes[1] else "quads"
+            primitive = (
+                "points" if not elliptic and sizes[0] <= params.min_width <= params.max_width <= sizes[1] else "quads"
+            )
         _check(params, primitive, sizes)
         width, height = int(scene.camera.width), int(scene.camera.height)
         target = gl.create_target(self.device, width, height, STAGES if stages else FAST)
         target.clears = {"color": (*map(float, scene.background), 0.0), "splat": (-1,)}
         guard = int(np.ceil(params.max_width / 2)) if primitive == "points" else 0
         target.fbo.viewport = (-guard, -guard, width + 2 * guard, height + 2 * guard)
-        flags = {"QUADS": primitive == "quads", "DISC": params.shape == "disc", "STAGES": stages}
+        flags = {"QUADS": primitive == "quads", "DISC": params.shape == "disc", "STAGES": stages or elliptic}
+        flags |= {"ZERO_TO_ONE": self.device.zero_to_one, "ELLIPSE": elliptic}
+        passes = [{"NEAREST": True}, {}] if elliptic else [{}]
+        drawn = [self._draws(scene, params, flags | each, primitive, guard) for each in passes]
+        vertices = self._vertices(scene, target, drawn[0], elliptic) if stages else {}
+        mode = moderngl.POINTS if primitive == "points" else moderngl.TRIANGLES
+        return Prepared(
+            device=self.device,
+            target=target,
+            draws=[draw for draws in drawn for draw in draws],
+            mode=mode,
+            stages=stages,
+            vertices=vertices,
+            averages=Averages(self.device, scene, target, *drawn) if elliptic else None,
+        )
+
+    def _draws(self, scene: Any, params: Any, flags: dict[str, bool], primitive: str, guard: int) -> list[_Draw]:
+        """Of all images, by one program each."""
         draws: list[_Draw] = []
         for image in scene.images:
-            program = self._program(_defines(scene, image, flags | {"ZERO_TO_ONE": self.device.zero_to_one}))
+            program = self._program(_defines(scene, image, flags))
             block = _uniforms(scene, params, image, guard, first=sum(len(draw.pixels) for draw in draws))
-            draws.append(self._image(image, scene.light is not None, program, block, primitive))
-        vertices = self._vertices(scene, target, draws) if stages else {}
-        mode = moderngl.POINTS if primitive == "points" else moderngl.TRIANGLES
-        return Prepared(device=self.device, target=target, draws=draws, mode=mode, stages=stages, vertices=vertices)
+            draws.append(self._image(image, scene.light is not None or flags["ELLIPSE"], program, block, primitive))
+        return draws
 
     def _image(self, image: Any, lit: bool, program: moderngl.Program, block: bytes, primitive: str) -> _Draw:
         """Buffers and textures of one reference image; an image without a point draws nothing."""
@@ -168,19 +198,25 @@ class Port:
     def _program(self, defines: str, varyings: Sequence[str] = ()) -> moderngl.Program:
         """The linked program for these #defines; with varyings for transform feedback, of the vertex stage alone."""
         if defines not in self._programs:
-            vertex, fragment = (defines + gl.source(f"splatting.{kind}") for kind in ("vert", "frag"))
+            kinds = "splatting.vert", "splatting_ellipse.frag" if "#define ELLIPSE" in defines else "splatting.frag"
+            vertex, fragment = (defines + gl.source(kind) for kind in kinds)
             self._programs[defines] = self.device.ctx.program(
                 vertex_shader=vertex, fragment_shader=None if varyings else fragment, varyings=tuple(varyings)
             )
         return self._programs[defines]
 
-    def _vertices(self, scene: Any, target: gl.Target, draws: list[_Draw]) -> dict[str, np.ndarray]:
+    def _vertices(self, scene: Any, target: gl.Target, draws: list[_Draw], elliptic: bool) -> dict[str, np.ndarray]:
         """The stages "vertex.*", as the vertex shader made them."""
         target.fbo.use()  # a draw call wants a complete frame buffer, even if nothing is rasterized
-        programs = [self._program(_defines(scene, image, {"CAPTURE": True}), tuple(VARYINGS)) for image in scene.images]
-        rows = np.concatenate([self._capture(draw, program) for draw, program in zip(draws, programs, strict=True)])
-        window, depth, width, color = np.split(rows, np.cumsum(list(VARYINGS.values()))[:-1], axis=1)
+        varyings, flags = ELLIPSES if elliptic else VARYINGS, {"CAPTURE": True, "ELLIPSE": elliptic}
+        programs = [self._program(_defines(scene, image, flags), tuple(varyings)) for image in scene.images]
+        numbers = sum(varyings.values())
+        pairs = zip(draws, programs, strict=True)
+        rows = np.concatenate([self._capture(draw, program, numbers) for draw, program in pairs])
+        window, depth, width, color, *shape = np.split(rows, np.cumsum(list(varyings.values()))[:-1], axis=1)
         dropped = width < 0.0
+        names = ("vertex.covariance", "vertex.amplitude", "vertex.distance")
+        shapes = [np.where(dropped, np.nan, each) for each in shape]
         source = [np.pad(draw.pixels, ((0, 0), (1, 0)), constant_values=number) for number, draw in enumerate(draws)]
         return {
             "vertex.window": np.where(dropped, np.nan, window),
@@ -188,11 +224,12 @@ class Port:
             "vertex.width": np.where(dropped, 0.0, width)[:, 0],
             "vertex.color": color,
             "vertex.source": np.concatenate(source).astype(np.int32),
+            **{name: each if name == names[0] else each[:, 0] for name, each in zip(names, shapes, strict=False)},
         }
 
-    def _capture(self, draw: _Draw, program: moderngl.Program) -> np.ndarray:
-        """(points, 7) float32 of one image by transform feedback."""
-        ctx, count, numbers = self.device.ctx, len(draw.pixels), sum(VARYINGS.values())
+    def _capture(self, draw: _Draw, program: moderngl.Program, numbers: int) -> np.ndarray:
+        """(points, numbers) float32 of one image by transform feedback."""
+        ctx, count = self.device.ctx, len(draw.pixels)
         if count == 0:
             return np.zeros((0, numbers), np.float32)
         source = ctx.buffer(draw.pixels[:, ::-1].astype(np.uint16).tobytes())
@@ -243,6 +280,7 @@ def _uniforms(scene: Any, params: Any, image: Any, guard: int, first: int) -> by
     vectors += [(), ()] if light is None else [light.homogeneous, (light.ambient, light.diffuse, light.specular)]
     vectors += [(params.alpha, params.beta, params.gamma, params.delta), (params.min_width, params.max_width)]
     vectors += [(width, height, width / (width + 2 * guard), height / (height + 2 * guard))]
+    vectors += [(params.footprint, params.low_pass, params.cutoff, params.depth_tolerance)]
     columns = [np.asarray(matrix, np.float32).T.ravel() for matrix in matrices]
     padded = [np.pad(np.asarray(vector, np.float32), (0, 4 - len(vector))) for vector in vectors]
     return np.concatenate(columns + padded).tobytes() + np.array([first, 0, 0, 0], np.int32).tobytes()
@@ -262,8 +300,10 @@ def _check(params: Any, primitive: str, sizes: tuple[float, float]) -> None:
     """Refuse what is not ported."""
     if primitive not in CORNERS:
         raise ValueError(f"primitive = {primitive!r}: the port allows {', '.join(CORNERS)}")
-    if params.shape not in ("square", "disc"):
-        raise ValueError(f"shape = {params.shape!r}: the port allows square, disc")
+    if params.shape not in ("square", "disc", "ellipse"):
+        raise ValueError(f"shape = {params.shape!r}: the port allows square, disc, ellipse")
+    if primitive == "points" and params.shape == "ellipse":
+        raise ValueError("primitive = 'points': the port draws ellipses as quads")
     if primitive == "points" and not sizes[0] <= params.min_width <= params.max_width <= sizes[1]:
         found = f"min_width = {params.min_width}, max_width = {params.max_width}"
         raise ValueError(f"{found}: this driver's point sprites allow {sizes[0]:g} to {sizes[1]:g}")

@@ -3,6 +3,7 @@
 //   LIT, HAS_SPECULAR, EXPONENT               Phong's lighting, or the stored colours
 //   COLOR_TEXTURE                             colours that are no bytes
 //   QUADS, DISC, STAGES, CAPTURE              the primitive, its shape, and what is handed on
+//   ELLIPSE                                   elliptical Gaussians for squares (Zwicker et al. 2001, section 4)
 //   ZERO_TO_ONE                               the clip volume is 0 ≤ z ≤ w
 //
 // Written for speed on a CPU driver, whose vertex stage runs on one thread: all of a pixel is one texel and one fetch, what
@@ -23,6 +24,7 @@ layout(std140, binding = 0) uniform Splats {
     vec4 law;               // alpha, beta, gamma, delta
     vec4 limits;            // least and largest width, pixels
     vec4 picture;           // columns, rows, and what part of the viewport's they are
+    vec4 filters;           // footprint, low_pass, cutoff, depth_tolerance
     ivec4 identity;         // number of the image's first vertex
 };
 
@@ -38,6 +40,11 @@ out vec2 window;
 out float depth;
 out float width;
 out vec3 color;
+#ifdef ELLIPSE
+out vec3 covariance;
+out float amplitude;
+out float along;
+#endif
 #else
 layout(location = 0) flat out vec3 color;
 #ifdef STAGES
@@ -45,6 +52,11 @@ layout(location = 1) flat out int splat;
 #endif
 #ifdef DISC
 layout(location = 2) flat out vec3 disc;        // centre in the window, quarter of the squared width
+#endif
+#ifdef ELLIPSE
+layout(location = 3) flat out vec4 gaussian;    // centre in the window, weight there, distance along the view axis
+layout(location = 4) flat out vec3 conic;       // inverse of the covariance: xx, xy, yy
+layout(location = 5) flat out vec2 ends;        // cutoff², 1 + depth_tolerance
 #endif
 #endif
 
@@ -57,13 +69,18 @@ vec3 unit(vec3 a) {
     return square > 0.0 ? a * inversesqrt(square) : a;
 }
 
-/** The centre of the pixel in the reference camera's view space. */
-vec3 unproject(float along_axis) {
+/** The centre of the pixel at depth 1, y downwards. */
+vec2 image_plane() {
     vec2 centre = vec2(pixel) + 0.5;
     float y = (centre.y - pinhole.y) * pinhole.w;
-    float x = (centre.x - pinhole.x - lens.x * y) * pinhole.z;
+    return vec2((centre.x - pinhole.x - lens.x * y) * pinhole.z, y);
+}
+
+/** The centre of the pixel in the reference camera's view space. */
+vec3 unproject(float along_axis) {
     float stretch = lens.y != 0.0 ? along_axis : 1.0;
-    return vec3(x * stretch, -(y * stretch), -along_axis);
+    vec2 plane = image_plane() * stretch;
+    return vec3(plane.x, -plane.y, -along_axis);
 }
 
 /** The rational law, of the distance from the eye; orthographic: from the plane of the camera. */
@@ -71,6 +88,37 @@ float splat_width(vec3 world, vec3 view) {
     float d = lens.z != 0.0 ? distance(world, eye.xyz) : -view.z;
     return clamp(law.x / (law.y * (d * d) + law.z * d + law.w), limits.x, limits.y);
 }
+
+#ifdef ELLIPSE
+const float LEAST_COSINE = 0.5, LEAST_AMPLITUDE = 1.0 / 1048576.0;
+
+/** A step in the reference image, taken on the tangent plane, in pixels of the window. */
+vec2 window_step(vec3 step, vec3 sight, vec3 normal, float facing, vec4 clip) {
+    step -= sight * (dot(normal, step) / facing);
+    vec4 moved = clip_from_view * vec4(mat3(view_from_world) * step, 0.0);
+    return (moved.xy - clip.xy / clip.w * moved.w) / clip.w * vec2(0.5, -0.5) * picture.xy;
+}
+
+/** xx, xy, yy of the splat's covariance, square pixels, and its weight at the centre. */
+vec4 footprint(vec3 normal, float along_axis, vec4 clip) {
+    vec2 plane = image_plane();
+    mat3 turn = mat3(world_from_view);
+    float scale = lens.y != 0.0 ? along_axis : 1.0;
+    vec3 sight = turn * (lens.y != 0.0 ? vec3(plane.x, -plane.y, -1.0) : vec3(0.0, 0.0, -1.0));
+    float facing = min(dot(normal, sight), -LEAST_COSINE * length(sight));
+    vec3 across = turn * vec3(scale * pinhole.z, 0.0, 0.0);
+    vec3 down = turn * vec3(-scale * lens.x * pinhole.z * pinhole.w, -scale * pinhole.w, 0.0);
+    vec2 u = window_step(across, sight, normal, facing, clip), v = window_step(down, sight, normal, facing, clip);
+    float s = filters.x * filters.x, h = filters.y * filters.y;
+    vec3 squares = vec3(u.x * u.x + v.x * v.x, u.x * u.y + v.x * v.y, u.y * u.y + v.y * v.y);
+    float area = s * abs(u.x * v.y - v.x * u.y);
+    float weight = area / sqrt(area * area + s * h * (squares.x + squares.z) + h * h);
+    float side = limits.y / (2.0 * filters.z);
+    squares *= s;
+    squares *= min(1.0, (side * side - h) / max(squares.x, squares.z));
+    return vec4(squares.x + h, squares.y, squares.z + h, clamp(weight, LEAST_AMPLITUDE, 1.0));
+}
+#endif
 
 #ifdef LIT
 /** base to the power EXPONENT by repeated squaring. */
@@ -101,7 +149,13 @@ void main() {
     vec3 world = (world_from_view * vec4(unproject(uintBitsToFloat(texel.x)), 1.0)).xyz;
     vec3 view = (view_from_world * vec4(world, 1.0)).xyz;
     vec4 clip = clip_from_view * vec4(view, 1.0);
+#ifdef ELLIPSE
+    vec4 shape = footprint(unit(bytes(texel.z) - 128.0), uintBitsToFloat(texel.x), clip);
+    vec2 sides = 2.0 * filters.z * sqrt(shape.xz);
+    float size = max(sides.x, sides.y);
+#else
     float size = splat_width(world, view);
+#endif
 #ifdef COLOR_TEXTURE
     color = texelFetch(colors, ivec2(pixel), 0).rgb;
 #else
@@ -122,10 +176,20 @@ void main() {
     window = centre;
     depth = ndc.z;
     width = kept ? size : -1.0;  // the law may make splats of no width, which are not dropped
+#ifdef ELLIPSE
+    covariance = shape.xyz;
+    amplitude = shape.w;
+    along = -view.z;
+#endif
 #else
 #ifdef QUADS
     int number = gl_VertexID >> 2;              // four vertices a splat
-    vec2 corner = snapped + (vec2(gl_VertexID & 1, (gl_VertexID >> 1) & 1) - 0.5) * size;
+#ifdef ELLIPSE
+    vec2 box = sides + 1.0;                     // the fragment stage cuts the ellipse out, wherever corners are snapped to
+#else
+    vec2 box = vec2(size);
+#endif
+    vec2 corner = snapped + (vec2(gl_VertexID & 1, (gl_VertexID >> 1) & 1) - 0.5) * box;
     vec4 position = kept ? vec4(2.0 * corner / picture.xy - 1.0, ndc.z, 1.0) : vec4(0.0, 0.0, 2.0, 1.0);
 #else
     int number = gl_VertexID;
@@ -142,6 +206,11 @@ void main() {
 #endif
 #ifdef DISC
     disc = vec3(snapped, 0.25 * size * size);
+#endif
+#ifdef ELLIPSE
+    gaussian = vec4(snapped, shape.w, -view.z);
+    conic = shape.zyx / (shape.x * shape.z - shape.y * shape.y) * vec3(1.0, -1.0, 1.0);
+    ends = vec2(filters.z * filters.z, 1.0 + filters.w);
 #endif
 #endif
 }

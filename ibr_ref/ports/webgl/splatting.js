@@ -3,37 +3,89 @@
 import {channels} from "./gl.js";
 
 const ATTACHMENTS = {color: "RGBA32F", splat: "R32I", depth: "R32F"};
+const NEAREST = {splat: "R32I", distance: "R32F", depth: "R32F"};
+const SUMS = {sums: "RGBA32F", count: "R32F"};
 const VARYINGS = ["window", "depth", "width", "color"];
+const OF_ELLIPSES = [...VARYINGS, "covariance", "amplitude", "along"];
 
 /** All arrays of a frame, {data, shape} by name. Throws for what is not ported. */
 export async function draw(device, {scene, params}) {
-    if (!["square", "disc"].includes(params.shape)) throw new Error(`shape = '${params.shape}': the port allows square, disc`);
-    const {gl} = device;
-    const {width, height} = scene.camera;
-    const target = device.target(width, height, ATTACHMENTS);
-    target.begin({color: [...scene.background, 0], splat: [-1, 0, 0, 0], depth: [1, 0, 0, 0]});
-    const captured = [], source = [];
+    const shapes = ["square", "disc", "ellipse"];
+    if (!shapes.includes(params.shape)) throw new Error(`shape = '${params.shape}': the port allows ${shapes.join(", ")}`);
+    const elliptic = params.shape === "ellipse";
+    const captured = [], source = [], images = [];
     let first = 0;
     for (const [number, image] of scene.images.entries()) {
         const pixels = valid(image);
-        const count = pixels.length / 2;
-        const textures = upload(device, image, scene.light !== null);
+        const textures = upload(device, image, scene.light !== null || elliptic);
+        images.push({image, pixels, textures, first});
         captured.push(await corners(device, scene, params, image, textures, pixels, first));
-        for (let i = 0; i < count; i++) source.push(number, pixels[2 * i + 1], pixels[2 * i]);
-        const flags = ["QUADS", "STAGES", "DEPTH_TOO", ...(params.shape === "disc" ? ["DISC"] : [])];
-        const program = await device.program(definesOf(scene, image, flags), "splatting.vert", "splatting.frag");
-        use(device, program, scene, params, image, textures, first);
-        gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
-        gl.enable(gl.DEPTH_TEST);
-        gl.depthFunc(gl.LESS);
+        for (let i = 0; i < pixels.length / 2; i++) source.push(number, pixels[2 * i + 1], pixels[2 * i]);
+        first += pixels.length / 2;
+    }
+    const shown = await (elliptic ? averaged : nearest)(device, scene, params, images);
+    return {...vertices(captured, source, elliptic), ...shown};
+}
+
+/** The splats of all images into the bound frame buffer; more: textures besides an image's own. */
+async function splats(device, scene, params, images, flags, fragment, more = {}) {
+    const {gl} = device;
+    const bound = gl.getParameter(gl.FRAMEBUFFER_BINDING);
+    for (const {image, pixels, textures, first} of images) {
+        const count = pixels.length / 2;
+        const program = await device.program(definesOf(scene, image, ["QUADS", "STAGES", ...flags]), "splatting.vert", fragment);
+        use(device, program, scene, params, image, {...textures, ...more}, first);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, bound);
         bindPixels(device, pixels, 4);
         const quads = new Uint32Array(6 * count);
         for (let i = 0; i < count; i++) [0, 1, 2, 2, 1, 3].forEach((k, at) => { quads[6 * i + at] = 4 * i + k; });
         device.buffer(quads, gl.ELEMENT_ARRAY_BUFFER);
         gl.drawElements(gl.TRIANGLES, quads.length, gl.UNSIGNED_INT, 0);
-        first += count;
     }
-    return arrays(target, captured, source);
+}
+
+/** The nearest splat's colour: squares and discs. */
+async function nearest(device, scene, params, images) {
+    const {gl} = device;
+    const {width, height} = scene.camera;
+    const target = device.target(width, height, ATTACHMENTS);
+    target.begin({color: [...scene.background, 0], splat: [-1, 0, 0, 0], depth: [1, 0, 0, 0]});
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LESS);
+    const flags = ["DEPTH_TOO", ...(params.shape === "disc" ? ["DISC"] : [])];
+    await splats(device, scene, params, images, flags, "splatting.frag");
+    return picture(target, target);
+}
+
+/** Ellipses: the nearest, sums over those of its surface, averages. */
+async function averaged(device, scene, params, images) {
+    const {gl} = device;
+    if (!gl.getExtension("EXT_float_blend")) throw new Error("WebGL 2 without EXT_float_blend");
+    const {width, height} = scene.camera;
+    const near = device.target(width, height, NEAREST);
+    near.begin({splat: [-1, 0, 0, 0], depth: [1, 0, 0, 0]});
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LESS);
+    await splats(device, scene, params, images, ["ELLIPSE", "NEAREST"], "splatting_ellipse.frag");
+    const sums = device.target(width, height, SUMS, false);
+    sums.begin();
+    gl.disable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE);
+    await splats(device, scene, params, images, ["ELLIPSE"], "splatting_ellipse.frag", {nearest: near.get("distance")});
+    gl.disable(gl.BLEND);
+    const target = device.target(width, height, {color: "RGBA32F"}, false);
+    target.begin();
+    const program = await device.program("", "shadows_screen.vert", "splatting_average.frag");
+    gl.useProgram(program);
+    device.uniform(program, "background", [...scene.background, 0]);
+    device.bind(program, {sums: sums.get("sums")});
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    return {
+        ...picture(target, near),
+        "raster.weight": {data: channels(sums.read("sums"), [3]), shape: [height, width]},
+        "raster.blended": {data: Int32Array.from(channels(sums.read("count"), [0])), shape: [height, width]},
+    };
 }
 
 /** Column and row of the valid pixels, row by row. */
@@ -84,7 +136,7 @@ function use(device, program, scene, params, image, textures, first) {
         [cx, cy, 1 / fx, 1 / fy], [skew, perspective(image.camera), perspective(camera)], camera.eye,
         light ? light.homogeneous : [], light ? [light.ambient, light.diffuse, light.specular] : [],
         [params.alpha, params.beta, params.gamma, params.delta], [params.min_width, params.max_width],
-        [camera.width, camera.height, 1, 1],
+        [camera.width, camera.height, 1, 1], [params.footprint, params.low_pass, params.cutoff, params.depth_tolerance],
     ], [first, 0, 0, 0]);
     device.bind(program, textures);
 }
@@ -98,29 +150,43 @@ function bindPixels(device, pixels, times) {
 }
 
 async function corners(device, scene, params, image, textures, pixels, first) {
-    const program = await device.program(definesOf(scene, image, ["CAPTURE"]), "splatting.vert", null, VARYINGS);
+    const elliptic = params.shape === "ellipse";
+    const defines = definesOf(scene, image, elliptic ? ["CAPTURE", "ELLIPSE"] : ["CAPTURE"]);
+    const program = await device.program(defines, "splatting.vert", null, elliptic ? OF_ELLIPSES : VARYINGS);
     use(device, program, scene, params, image, textures, first);
     bindPixels(device, pixels, 1);
-    return device.captured(program, pixels.length / 2, 7);
+    return device.captured(program, pixels.length / 2, elliptic ? 12 : 7);
 }
 
-function arrays(target, captured, source) {
-    const {width, height} = target;
-    const rows = captured.flatMap(each => [...each]);
-    const count = rows.length / 7;
-    const dropped = i => rows[7 * i + 3] < 0;
+/** The stages "vertex.*". */
+function vertices(captured, source, elliptic) {
+    const rows = captured.flatMap(each => [...each]), numbers = elliptic ? 12 : 7;
+    const count = rows.length / numbers;
+    const dropped = i => rows[numbers * i + 3] < 0;
     const column = (which, blank) => Float32Array.from({length: count * which.length}, (_, at) => {
         const i = Math.floor(at / which.length);
-        return blank && dropped(i) ? NaN : rows[7 * i + which[at % which.length]];
+        return blank && dropped(i) ? NaN : rows[numbers * i + which[at % which.length]];
     });
-    const depth = {data: channels(target.read("depth"), [0]), shape: [height, width]};
     return {
         "vertex.window": {data: column([0, 1], true), shape: [count, 2]},
         "vertex.depth": {data: column([2], true), shape: [count]},
         "vertex.width": {data: column([3], false).map(width => Math.max(width, 0)), shape: [count]},
         "vertex.color": {data: column([4, 5, 6], false), shape: [count, 3]},
         "vertex.source": {data: Int32Array.from(source), shape: [count, 3]},
-        "raster.splat": {data: channels(target.read("splat"), [0]), shape: [height, width]},
+        ...(elliptic ? {
+            "vertex.covariance": {data: column([7, 8, 9], true), shape: [count, 3]},
+            "vertex.amplitude": {data: column([10], true), shape: [count]},
+            "vertex.distance": {data: column([11], true), shape: [count]},
+        } : {}),
+    };
+}
+
+/** Colour, and the nearest splats with their depth, of another target. */
+function picture(target, near) {
+    const {width, height} = target;
+    const depth = {data: channels(near.read("depth"), [0]), shape: [height, width]};
+    return {
+        "raster.splat": {data: channels(near.read("splat"), [0]), shape: [height, width]},
         "raster.depth": depth,
         color: {data: channels(target.read("color"), [0, 1, 2]), shape: [height, width, 3]},
         depth,

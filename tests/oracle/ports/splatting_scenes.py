@@ -8,6 +8,7 @@ import numpy as np
 
 from ibr_ref import Camera, DepthImage, Light
 from ibr_ref.models.surface_depths import ball_depths, plane_depths
+from ibr_ref.oracle.cases.splatting import CASES
 from ibr_ref.splatting import Params, Scene
 from tests.splatting.scenes import Array, image_of, looking, measured, noise, parallel
 
@@ -99,6 +100,18 @@ def dust() -> tuple[Scene, Params]:
     return Scene(images=[image], camera=view, light=light, background=(0.3, 0.3, 0.3)), law
 
 
+def ellipses() -> tuple[Scene, Params]:
+    """Those of the case."""
+    case = CASES["splatting-ellipses"]()
+    return case.scene, case.params
+
+
+def ovals() -> tuple[Scene, Params]:
+    """Orthographic ones, of the case; some are dropped."""
+    case = CASES["splatting-ovals"]()
+    return case.scene, case.params
+
+
 SCENES: dict[str, Callable[[], tuple[Scene, Params]]] = {
-    scene.__name__: scene for scene in (lamp, sun, shelves, among, terraces, ties, dust)
+    scene.__name__: scene for scene in (lamp, sun, shelves, among, terraces, ties, dust, ellipses, ovals)
 }

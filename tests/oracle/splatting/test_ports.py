@@ -16,7 +16,7 @@ from tests.oracle.devices import random_policy
 from tests.oracle.judgements import complaints, first_wrong, picture, pictures
 from tests.oracle.splatting.judged import REAL, REFEREE, SMALL, case, drawn, image, plain, reference, stages
 
-TELLING = ("lamp", "shelves", "discs", "among", "terraces", "dust", "ball", "quads", "sprites")
+TELLING = ("lamp", "shelves", "discs", "among", "terraces", "dust", "ball", "quads", "sprites", "ellipses", "ovals")
 """The small cases, those in which most bugs show first."""
 
 SURVIVORS = 0.05

@@ -7,6 +7,7 @@ with the picture alone is resolve's, its depth raster's.
 from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.faults.splatting.atlas import ATLAS
 from ibr_ref.oracle.faults.splatting.decoding import DECODING
+from ibr_ref.oracle.faults.splatting.ellipses import AVERAGES, BLENDS, FOOTPRINTS
 from ibr_ref.oracle.faults.splatting.geometry import GEOMETRY
 from ibr_ref.oracle.faults.splatting.law import LAW
 from ibr_ref.oracle.faults.splatting.lighting import LIGHTING
@@ -17,7 +18,9 @@ from ibr_ref.oracle.programs.splatting import Port
 from ibr_ref.oracle.programs.splatting.variants import VARIANTS
 
 MUTANTS: tuple[Mutant, ...] = tuple(
-    mutant for bugs in (NORMALS, ATLAS, GEOMETRY, LAW, DECODING, LIGHTING, RASTER, RESOLVE) for mutant in bugs.mutants
+    mutant
+    for bugs in (NORMALS, ATLAS, GEOMETRY, LAW, FOOTPRINTS, DECODING, LIGHTING, RASTER, BLENDS, RESOLVE, AVERAGES)
+    for mutant in bugs.mutants
 )
 """In the order of the stages."""
 

@@ -8,7 +8,7 @@ from ibr_ref.oracle.faults.bugs import Bugs
 from ibr_ref.oracle.programs.splatting.case import Floats, Image, Vector
 from ibr_ref.oracle.programs.splatting.port import Port
 
-LAW = Bugs("vertex")
+LAW = Bugs("vertex", only=("square", "disc"))
 
 
 @LAW.add("distance-not-squared")

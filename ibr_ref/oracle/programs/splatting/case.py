@@ -15,6 +15,11 @@ Image = Any
 class Case(Program):
     """The scene's cameras and lights, on the device."""
 
+    @property
+    def elliptic(self) -> bool:
+        """Whether splats are ellipses whose colours are averaged."""
+        return bool(self.params.shape == "ellipse")
+
     def towards(self, source: Any, point: Vector) -> Vector:
         """Unit vectors from points to a homogeneous source (4,): an eye, or a light. One at infinity is one already."""
         *place, w = self.do.number(source)

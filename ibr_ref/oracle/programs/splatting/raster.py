@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ibr_ref.oracle.programs.splatting.case import Bools, Case, Floats, Ints, Vector
+
+_NO_GAUSSIANS = np.zeros((0, 5))
 
 
 class Splats(NamedTuple):
@@ -20,6 +23,8 @@ class Splats(NamedTuple):
     width: Floats
     depth: Floats
     """As the depth buffer holds it."""
+    gaussian: Floats = _NO_GAUSSIANS
+    """(n, 5) xx, xy, yy, amplitude, distance of ellipses."""
 
 
 class Fragments(NamedTuple):
@@ -51,13 +56,10 @@ class Raster(Case):
         """The stage's arrays but for the margin, which is the reference's own."""
         camera = self.scene.camera
         buffers = self.cleared(camera.height * camera.width)
-        window, width, depth = (vertices[f"vertex.{name}"] for name in ("window", "width", "depth"))
-        live = np.flatnonzero((width > 0.0) & np.isfinite(window).all(axis=1))
-        splats = self.splats(live, list(window[live].T), width[live], depth[live])
+        splats = self.live(vertices)
         names = self.names(vertices["vertex.source"][:, 0], splats.vertex)
-        for first in range(0, len(names), BATCH):
-            batch = slice(first, first + BATCH)
-            fragments = self.fragments(Splats._make(values[batch] for values in splats))
+        for first, batch in self.batches(splats):
+            fragments = self.fragments(batch)
             splat = first + fragments.splat
             pixel = fragments.row * camera.width + fragments.column
             self.draw(buffers, pixel, names[splat], splats.depth[splat])
@@ -67,6 +69,21 @@ class Raster(Case):
             "raster.depth": buffers.depth.reshape(shape),
             "raster.overdraw": buffers.overdraw.reshape(shape),
         }
+
+    def live(self, vertices: dict[str, Any]) -> Splats:
+        """Those of the vertex stage's arrays that are not dropped."""
+        window, width, depth = (vertices[f"vertex.{name}"] for name in ("window", "width", "depth"))
+        some = np.flatnonzero((width > 0.0) & np.isfinite(window).all(axis=1))
+        splats = self.splats(some, list(window[some].T), width[some], depth[some])
+        if "vertex.covariance" not in vertices:
+            return splats
+        columns = [*vertices["vertex.covariance"].T, vertices["vertex.amplitude"], vertices["vertex.distance"]]
+        return splats._replace(gaussian=np.stack(columns, axis=1)[splats.vertex])
+
+    def batches(self, splats: Splats) -> Iterator[tuple[int, Splats]]:
+        """So many at a time, each with the number of its first."""
+        for first in range(0, len(splats.vertex), BATCH):
+            yield first, Splats._make(values[first : first + BATCH] for values in splats)
 
     def splats(self, vertex: Ints, window: Vector, width: Floats, depth: Floats) -> Splats:
         """Of the points that are not dropped."""
@@ -95,9 +112,9 @@ class Raster(Case):
         step = np.arange(len(splat)) - np.repeat(np.cumsum(rows * columns) - rows * columns, rows * columns)
         down, across = np.divmod(step, np.maximum(columns[splat], 1))
         fragments = Fragments(splat, top[splat] + down, left[splat] + across)
-        if self.params.shape != "disc":
+        if self.params.shape == "square":
             return fragments
-        kept = self.in_disc(splats, fragments)
+        kept = self.inside(splats, fragments)
         return Fragments._make(values[kept] for values in fragments)
 
     def spans(self, splats: Splats) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
@@ -129,6 +146,10 @@ class Raster(Case):
     def end_before(self, high: Floats) -> Floats:
         """The same for the other border, where pixels are not covered any more."""
         return np.ceil(high - 0.5)
+
+    def inside(self, splats: Splats, fragments: Fragments) -> Bools:
+        """Of the pixels of splats' boxes those that are covered."""
+        return self.in_disc(splats, fragments)
 
     def in_disc(self, splats: Splats, fragments: Fragments) -> Bools:
         """dx² + dy² ≤ w²/4."""

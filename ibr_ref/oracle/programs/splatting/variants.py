@@ -109,6 +109,30 @@ class _CutQuads(_Quads):
         return super().splats(vertex, window, width, depth)
 
 
+class _Conics(Port):
+    """Ellipses: the inverse of the covariance is made first, as a vertex shader hands it on."""
+
+    def quadratic(self, dx: Floats, dy: Floats, xx: Floats, xy: Floats, yy: Floats) -> Floats:
+        a, b, c = (self.do.divide(x, self.determinant(xx, xy, yy)) for x in (yy, xy, xx))
+        products = [self.do.multiply(dx, dx), self.do.multiply(dx, dy), self.do.multiply(dy, dy)]
+        return self.do.dot([a, self.do.multiply(-2.0, b), c], products)
+
+
+class _Axes(Port):
+    """Ellipses: quads along the axes, whose lengths are the roots of the covariance's eigenvalues."""
+
+    def quadratic(self, dx: Floats, dy: Floats, xx: Floats, xy: Floats, yy: Floats) -> Floats:
+        do = self.do
+        half, apart = do.multiply(0.5, do.add(xx, yy)), do.multiply(0.5, do.subtract(xx, yy))
+        far = do.root(do.dot([apart, xy], [apart, xy]))
+        long, short = do.add(half, far), do.subtract(half, far)
+        flat = xx >= yy
+        axis = [np.where(flat, do.subtract(long, yy), xy), np.where(flat, xy, do.subtract(long, xx))]
+        x, y = do.unit([np.where(far > 0.0, axis[0], 1.0), np.where(far > 0.0, axis[1], 0.0)])
+        u, v = (do.divide(do.dot([dx, dy], way), do.root(size)) for way, size in (([x, y], long), ([-y, x], short)))
+        return do.dot([u, v], [u, v])
+
+
 class _AllAtOnce(_ClipFromWorld, _Viewport, _HornersLaw, _CosinesOnly, _Quads):
     """Other orders in every stage that has one."""
 
@@ -137,6 +161,8 @@ VARIANTS: tuple[Variant, ...] = (
     Variant("horners-law", _FLOAT32, "ieee32", _HornersLaw),
     Variant("cosines-only", _FLOAT32, "ieee32", _CosinesOnly),
     Variant("whole-codes", _FLOAT32, "ieee32", _WholeCodes),
+    Variant("conics", _FLOAT32, "ieee32", _Conics),
+    Variant("axes", _FLOAT32, "ieee32", _Axes),
     Variant("pow", Policy(intrinsic_power=True), "ieee32"),
     Variant("pow-loose", Policy(intrinsic_power=True, loose=2, seed=3), "vulkan"),
     Variant("own-normals", _FLOAT32, "ieee32", OwnNormals, ("atlas.normal",)),

@@ -12,6 +12,11 @@ from ibr_ref.oracle.programs.splatting.case import Bools, Floats, Image, Ints, V
 from ibr_ref.oracle.programs.splatting.lighting import Lighting
 from ibr_ref.oracle.programs.splatting.unproject import Unprojection
 
+GAUSSIAN = ("vertex.covariance", "vertex.amplitude", "vertex.distance")
+"""Arrays of ellipses."""
+Clip = Vector
+"""x, y, z, w of clip space."""
+
 
 @dataclass(frozen=True)
 class Texels:
@@ -36,6 +41,8 @@ class Placed:
     width: Floats
     kept: Bools
     """Others are dropped: window, depth and width mean nothing."""
+    gaussian: Vector
+    """xx, xy, yy, amplitude and distance of ellipses; of other splats nothing."""
 
 
 class Vertex(Unprojection, Lighting):
@@ -46,13 +53,19 @@ class Vertex(Unprojection, Lighting):
         image = self.scene.images[number]
         placed = self.placed(image, texels)
         kept = np.asarray(placed.kept)
+        gaussian = [np.where(kept, x, np.nan) for x in placed.gaussian]
         return {
             "vertex.window": np.where(kept[:, None], np.stack(placed.window, axis=1), np.nan),
             "vertex.depth": np.where(kept, placed.depth, np.nan),
             "vertex.width": np.where(kept, placed.width, 0.0),
             "vertex.color": np.stack(self.lit(image, placed.world, texels.codes, texels.albedo), axis=1),
             "vertex.source": self.source(number, texels.rows, texels.columns),
+            **(dict(zip(GAUSSIAN, self.named_gaussian(gaussian), strict=True)) if gaussian else {}),
         }
+
+    def named_gaussian(self, gaussian: Vector) -> Vector:
+        """(P, 3), (P,) and (P,): as the arrays of an ellipse have it."""
+        return [np.stack(gaussian[:3], axis=1), *gaussian[3:]]
 
     # --- Fetches -----------------------------------------------------------------------------------------------------
 
@@ -92,8 +105,8 @@ class Vertex(Unprojection, Lighting):
         tell("world x, y, z", world)
         window, window_depth = self.projected(clip, view)
         kept = self.kept(window, clip[2], clip[3])
-        distance = tell("distance d of the law", self.distance(image, world, view))
-        return Placed(world, list(window), window_depth, self.clamp_width(self.width(distance)), kept)
+        width, gaussian = self.sized(image, texels, world, view, clip)
+        return Placed(world, list(window), window_depth, width, kept, gaussian)
 
     def positions(self, image: Image, point: Vector) -> tuple[Vector, Vector, Vector]:
         """World (3), view (3) and clip (4) coordinates, of those in the reference camera's view space."""
@@ -164,6 +177,11 @@ class Vertex(Unprojection, Lighting):
         return self.do.told("0 <= z", z >= 0.0) & self.do.told("z <= w", z <= w)
 
     # --- Widths ------------------------------------------------------------------------------------------------------
+
+    def sized(self, image: Image, texels: Texels, world: Vector, view: Vector, clip: Clip) -> tuple[Floats, Vector]:
+        """W_s by the law; and no Gaussian."""
+        distance = self.do.told("distance d of the law", self.distance(image, world, view))
+        return self.clamp_width(self.width(distance)), []
 
     def distance(self, image: Image, world: Vector, view: Vector) -> Floats:
         """d, from the eye; orthographic, along the view axis. The image is the one that the points are of."""

@@ -21,6 +21,14 @@ from ibr_ref.scene import Light
 
 LAW = ("alpha", "beta", "gamma", "delta")
 """Numbers of the widths' law."""
+ELLIPSES = {
+    "footprint": ("vertex", ("variances",)),
+    "low_pass": ("vertex", ("variances",)),
+    "max_width": ("vertex", ("shrink",)),
+    "cutoff": ("vertex", ("shrink", "larger_side", "covers", "spans")),
+    "depth_tolerance": ("raster", ("reach",)),
+}
+"""Numbers of ellipses, the first stage that reads each, and the methods."""
 WIDTHS = ("min_width", "max_width")
 LIT = {"ambient": "received", "diffuse": "received", "specular": "highlight", "exponent": "exponent"}
 """Numbers of the light, and the method that reads each."""
@@ -46,8 +54,7 @@ def recognizes(case: Case, device: Device, handed: Handed, wrong: Judgement, cau
 def _numbers(case: Case, handed: Handed, stage: str) -> Numbers:
     """Those of the law, of the light and of the background."""
     light = case.scene.light
-    settings = [Setting(path=("params", name), stages=("vertex",), read_by=("width",)) for name in LAW]
-    settings += [Setting(path=("params", name), stages=("vertex",), read_by=("clamp_width",)) for name in WIDTHS]
+    settings = _of_ellipses() if case.params.shape == "ellipse" else _of_widths()
     if light is not None:
         settings += [
             Setting(path=("scene", "light", name), stages=("vertex",), read_by=(method,))
@@ -64,6 +71,18 @@ def _numbers(case: Case, handed: Handed, stage: str) -> Numbers:
         return found
 
     return Numbers(case=case, port=Program, settings=settings, vectors=vectors, handed=handed, draw=draw)
+
+
+def _of_widths() -> list[Setting]:
+    law = [Setting(path=("params", name), stages=("vertex",), read_by=("width",)) for name in LAW]
+    return law + [Setting(path=("params", name), stages=("vertex",), read_by=("clamp_width",)) for name in WIDTHS]
+
+
+def _of_ellipses() -> list[Setting]:
+    return [
+        Setting(path=("params", name), stages=(stage,), read_by=methods, jumps=stage == "raster")
+        for name, (stage, methods) in ELLIPSES.items()
+    ]
 
 
 def _vectors(case: Case, light: Light) -> list[Vector]:

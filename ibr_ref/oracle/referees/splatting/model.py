@@ -25,6 +25,8 @@ from ibr_ref.oracle.programs.program import overridden
 from ibr_ref.oracle.programs.splatting import Port as Program
 from ibr_ref.oracle.programs.splatting.atlas import Atlas
 from ibr_ref.oracle.programs.splatting.case import Case as Shared
+from ibr_ref.oracle.programs.splatting.ellipses import Ellipses, Footprints
+from ibr_ref.oracle.programs.splatting.lighting import Lighting
 from ibr_ref.oracle.programs.splatting.normals import Preparation
 from ibr_ref.oracle.programs.splatting.raster import Raster
 from ibr_ref.oracle.programs.splatting.unproject import Unprojection
@@ -74,9 +76,14 @@ class Model:
     @property
     def places_of(self) -> Model | None:
         """The right model, where points lie as in it."""
-        return (
-            None if self.right is None or self.changes(AnyProgram, Shared, Atlas, Unprojection, Vertex) else self.right
-        )
+        parts = (AnyProgram, Shared, Atlas, Unprojection, Vertex, Footprints)
+        normals = (Lighting,) if self.elliptic else ()  # by which ellipses have their shape
+        return None if self.right is None or self.changes(*parts, *normals) else self.right
+
+    @property
+    def elliptic(self) -> bool:
+        """Whether splats are ellipses, which are averaged."""
+        return bool(self.case.params.shape == "ellipse")
 
     @cached_property
     def machine(self) -> Machine:
@@ -120,7 +127,7 @@ class Model:
     @cached_property
     def own_contest(self) -> Contest:
         """Theirs against each other."""
-        if self.places_of and not self.changes(Raster):
+        if self.places_of and not self.changes(Raster, Ellipses):
             return self.places_of.own_contest
         return contest(self.program, self.own_places)
 
@@ -139,14 +146,15 @@ class Model:
             with np.errstate(all="ignore"):
                 found = self.program.placed(self.case.scene.images[number], points.texels(share))
             count = share.stop - share.start
-            numbers = [*found.window, found.depth, found.width, *found.world]
+            numbers = [*found.window, found.depth, found.width, *found.world, *found.gaussian]
             may, must = (np.broadcast_to(end, count) for end in may_and_must(found.kept))
             parts.append([*(self._row(x, count) for x in numbers), must, may])
         if not parts:
             none, no = Number(self.machine, np.zeros(0)), np.zeros(0, np.bool_)
             return Placed([none] * 2, none, none, no, no, world=[none] * 3)
-        x, y, depth, width, *world, must, may = (joined(list(column)) for column in zip(*parts, strict=True))
-        return Placed([x, y], depth, width, must, may, world=world)
+        x, y, depth, width, *more, must, may = (joined(list(column)) for column in zip(*parts, strict=True))
+        gaussian = joined_columns(more[3:]) if more[3:] else None
+        return Placed([x, y], depth, width, must, may, gaussian=gaussian, world=more[:3])
 
     def _row(self, number: Any, count: int) -> Number:
         """A number of each point, where it is one of all of them too."""

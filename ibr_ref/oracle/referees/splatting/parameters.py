@@ -13,14 +13,16 @@ STEP = 2.0**-10
 """Of difference quotients, as a share of the parameter's size (at least of 1): far above rounding, whose share of a quotient
 is 2^-53 / STEP, and small enough for a second-order error of STEP^2."""
 
+ELLIPSES = ("footprint", "low_pass", "cutoff", "depth_tolerance", "max_width")
 LAW = ("alpha", "beta", "gamma", "delta", "min_width", "max_width")
 COEFFICIENTS = ("ambient", "diffuse", "specular")
 
 
 def parameters(case: Case) -> list[Parameter]:
-    """Those of the light, the law of the width, the background, and the eye."""
+    """Those of the light, of the law of the width or of the ellipses, the background, and the eye."""
     scene, light = case.scene, case.scene.light
-    found = [_of(name, getattr(case.params, name), _changed(case, with_params, name)) for name in LAW]
+    names = ELLIPSES if case.params.shape == "ellipse" else LAW
+    found = [_of(name, getattr(case.params, name), _changed(case, with_params, name)) for name in names]
     if light is not None:
         found += [_of(f"light.{name}", getattr(light, name), _changed(case, with_light, name)) for name in COEFFICIENTS]
         place = "position" if light.position is not None else "direction"

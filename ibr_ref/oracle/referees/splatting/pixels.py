@@ -18,8 +18,9 @@ from ibr_ref.oracle.pipeline.splats import Contest, contest, recut
 from ibr_ref.oracle.programs.splatting import Port as Program
 from ibr_ref.oracle.referees.outcomes import converted, stored
 from ibr_ref.oracle.referees.reads import fed
+from ibr_ref.oracle.referees.splatting.blends import SUMS, averages, own_weight, sums, that_agree
 from ibr_ref.oracle.referees.splatting.model import NOTHING, Branch, Model, Placed
-from ibr_ref.oracle.referees.splatting.points import VISIBLE, Port
+from ibr_ref.oracle.referees.splatting.points import VISIBLE, Port, lightings
 from ibr_ref.oracle.referees.splatting.table import Table
 from ibr_ref.oracle.referees.splatting.texels import judge_normals
 from ibr_ref.oracle.referees.splatting.verdict import judgement
@@ -33,6 +34,11 @@ def pixels_of(model: Model) -> tuple[int, int]:
     """Rows and columns of the picture."""
     camera = model.case.scene.camera
     return int(camera.height), int(camera.width)
+
+
+def system_of(model: Model) -> str:
+    """What the judged one reads."""
+    return str(model.case.params.shape)
 
 
 def names_of(model: Model, points: Table, splat: Ints) -> Ints:
@@ -49,15 +55,55 @@ def judge_raster(port: Port) -> Judgement:
     result = contest(model.program, port.landed)
     shape = pixels_of(model)
     pixels = shape[0] * shape[1]
-    given = {name: np.asarray(handed[name]).reshape(pixels) for name in ARRAYS if name in handed}
+    names = (*ARRAYS, *SUMS) if model.elliptic else ARRAYS
+    given = {name: np.asarray(handed[name]).reshape(pixels) for name in names if name in handed}
     bad = _contradictions(result, names_of(model, port.fed, result.splat), given)
+    if model.elliptic:
+        bad |= _wrong_sums(port, result, given)
     undecided = (np.bincount(result.pixel, minlength=pixels) + result.empty > 1) | (not result.judged)
     width = np.full(pixels, np.nan)
     np.fmax.at(width, result.pixel, 2.0 * result.depth.deviation[result.splat])
     shaped = {name: (wrong & result.judged).reshape(shape) for name, wrong in bad.items()}
-    return judgement(
-        "raster", "pixel", shaped, undecided.reshape(shape), width.reshape(shape), fed("splatting", shaped, handed)
-    )
+    replayed = fed("splatting", shaped, handed, system_of(model))
+    return judgement("raster", "pixel", shaped, undecided.reshape(shape), width.reshape(shape), replayed)
+
+
+def _wrong_sums(port: Port, result: Contest, given: dict[str, Ints | Floats]) -> dict[str, Bools]:
+    """Of the sums over ellipses: where one contradicts all that may be added up, with a nearest splat that agrees."""
+    model, asked = port.model, [name for name in SUMS if name in given]
+    if not asked:
+        return {}
+    agrees, empty = _agreeing(result, names_of(model, port.fed, result.splat), given)
+    none = ~empty
+    none[result.pixel[agrees]] = False  # the nearest was wrong before
+    agrees |= none[result.pixel]
+    rows = np.flatnonzero(agrees)
+    found = sums(model, port.fed, port.landed, result.pixel[rows], result.splat[rows])
+    pixel, fits, bad = result.pixel[rows][found.row], np.ones(len(found.row), np.bool_), {}
+    empty |= none & result.empty
+    for name in asked:
+        array = given[name]
+        own = found.weight.allows(array[pixel]) if name == "raster.weight" else found.count == array[pixel]
+        fits &= own | found.lost
+        empty &= array == STAGES[name].blank
+        left = empty.copy()
+        left[pixel[fits]] = True
+        bad[name] = ~left
+    return bad
+
+
+def _agreeing(result: Contest, names: Ints, given: dict[str, Ints | Floats]) -> tuple[Bools, Bools]:
+    """Which pairs have the winners and depths that were handed in, and which pixels may be empty by these."""
+    agrees, empty = np.ones(len(result.pixel), np.bool_), result.empty.copy()
+    if "raster.splat" in given:
+        found = given["raster.splat"].astype(np.int64)
+        agrees &= names == found[result.pixel]
+        empty &= found == STAGES["raster.splat"].blank
+    if "raster.depth" in given:
+        depth = given["raster.depth"].astype(np.float64)
+        agrees &= result.depth[result.splat].allows(depth[result.pixel])
+        empty &= depth == STAGES["raster.depth"].blank
+    return agrees, empty
 
 
 def _contradictions(result: Contest, names: Ints, given: dict[str, Ints | Floats]) -> dict[str, Bools]:
@@ -215,34 +261,73 @@ def judge_image(port: Port, among: Bools | None = None, *, thorough: bool = Fals
             return judgement("image", "pixel", {"depth": wrong}, np.zeros(wrong.shape, np.bool_), nothing)
 
     def lit(points: Table) -> Judgement:
-        colors = shown(model, found, colors_of(model, points, model.own_places, found.winner, NOTHING))
-        reference = model.case.frame.color.reshape(-1, 3) if model.right is None else _first(found, colors)
-        return _judged(model, "image", handed, found, colors, reference, ())
+        placed, winners = model.own_places, found
+        if model.elliptic and points is not model.own:  # its normals are those of other ellipses
+            placed = model.placed(points)
+            winners = seen(model, points, placed)
+        rows, colors = looks(model, winners, points, placed, NOTHING)
+        reference = model.case.frame.color.reshape(-1, 3) if model.right is None else _first(rows, colors)
+        return _judged(model, "image", handed, rows, colors, reference, ())
 
     first = lit(model.own)
-    if "atlas.normal" not in handed or model.case.scene.light is None or not first.wrong.any():
+    reads_normals = model.elliptic or model.case.scene.light is not None
+    if "atlas.normal" not in handed or not reads_normals or not first.wrong.any():
         return first
     own = model.table({name: handed[name] for name in ("atlas.rects", "atlas.normal") if name in handed})
     if not own.usable.all() or judge_normals(port).wrong.any():
         return first
-    return _fewest([first, lit(own)])
+    return fewest([first, lit(own)])
 
 
-def _fewest(judgements: Sequence[Judgement]) -> Judgement:
+def fewest(judgements: Sequence[Judgement]) -> Judgement:
+    """The one with the fewest wrong elements."""
     return min(judgements, key=lambda judgement: int(judgement.wrong.sum()))
 
 
 def judge_resolve(port: Port) -> Judgement:
     """The picture from the port's own winners, vertices and texels, as far as they were handed in."""
     model, handed, points, placed = port.model, port.handed, port.fed, port.landed
-    lightings = [points] if "vertex.color" in handed else points.lightings
+    lit = [points] if "vertex.color" in handed else lightings(model, points)
     found = outcomes(port)
     compared = [name for name in ("color", "depth") if name in handed]
-    replayed, results = fed("splatting", compared, handed), []
-    for lighting in lightings:
-        colors = shown(model, found, colors_of(model, lighting, placed, found.winner, handed))
-        results.append(_judged(model, "resolve", handed, found, colors, _first(found, colors), replayed))
-    return _fewest(results)
+    replayed, results = fed("splatting", compared, handed, system_of(model)), []
+    for lighting in lit:
+        rows, colors = looks(model, found, lighting, placed, handed)
+        results.append(_judged(model, "resolve", handed, rows, colors, _first(rows, colors), replayed))
+    return fewest(results)
+
+
+def looks(model: Model, found: Seen, points: Table, placed: Placed, handed: Handed) -> tuple[Seen, Shown]:
+    """All that pixels may show, and what it looks like; of ellipses a nearest splat may be in several averages."""
+    if not model.elliptic:
+        return found, shown(model, found, colors_of(model, points, placed, found.winner, handed))
+    weight = own_weight(handed)
+    sums_ = sums(model, points, placed, found.pixel, _unnamed(model, points, found.winner))
+    if weight is not None:
+        sums_ = that_agree(sums_, found.pixel, weight)
+    branches = colors_of(model, points, placed, sums_.splat, handed)
+    rows = found.take(sums_.row)
+    mixed = averages(sums_, model, branches, None if weight is None else weight[rows.pixel])
+    rows = replace(rows, judged=_without_lost(rows, mixed.lost))
+    index = np.where(mixed.shown, np.arange(len(rows.pixel)), -1)
+    colors = shown(model, replace(rows, winner=index), [Branch(mixed.color, np.ones(len(index), np.bool_))])
+    return rows, colors
+
+
+def _without_lost(rows: Seen, lost: Bools) -> Bools:
+    judged = rows.judged.copy()
+    judged[rows.pixel[lost]] = False
+    return judged
+
+
+def _unnamed(model: Model, points: Table, winner: Ints) -> Ints:
+    """Splats by the numbers that winners are known by; the first that has one."""
+    if model.program.right("names"):
+        return winner
+    names = names_of(model, points, np.arange(len(points)))
+    order = np.argsort(names, kind="stable")
+    at = np.minimum(np.searchsorted(names[order], winner), len(order) - 1)
+    return np.where(winner >= 0, order[at], -1)
 
 
 def _first(found: Seen, colors: Shown) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,15 +12,16 @@ from ibr_ref.affine.rows import TINY, UNIT
 from ibr_ref.array_types import Bools, Floats, Ints
 from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.judgement import Handed, Judgement
+from ibr_ref.oracle.programs.splatting.vertex import GAUSSIAN
 from ibr_ref.oracle.referees.outcomes import judged, stored
 from ibr_ref.oracle.referees.reads import fed
 from ibr_ref.oracle.referees.splatting.model import Branch, Model, Placed
-from ibr_ref.oracle.referees.splatting.table import Table
+from ibr_ref.oracle.referees.splatting.table import Table, joined_columns
 from ibr_ref.oracle.referees.splatting.verdict import judgement
 from ibr_ref.splatting.contract import STAGES
 
-ARRAYS = ("vertex.source", "vertex.window", "vertex.depth", "vertex.width", "vertex.color")
-PLACES = ("vertex.window", "vertex.depth", "vertex.width")
+ARRAYS = ("vertex.source", "vertex.window", "vertex.depth", "vertex.width", *GAUSSIAN, "vertex.color")
+PLACES = ("vertex.window", "vertex.depth", "vertex.width", *GAUSSIAN)
 """What a splat is made of."""
 VISIBLE = 1.0 / 255.0
 """Colours farther apart than one byte show."""
@@ -29,7 +30,7 @@ VISIBLE = 1.0 / 255.0
 def judge_vertex(port: Port, among: Bools | None = None) -> Judgement:
     """Every point, or those `among`: dropped or kept, with all its numbers; and lit, with its highlight or without."""
     model, handed, every = port.model, port.handed, port.table
-    given = {name: np.asarray(handed[name], np.float64) for name in ARRAYS if name in handed}
+    given = {name: np.asarray(handed[name], np.float64) for name in ARRAYS if has(model, handed, name)}
     index = np.arange(len(every)) if among is None else np.flatnonzero(among)
     points, placed = (every, port.placed) if among is None else port.some(index)
     found = {name: array[index] for name, array in given.items()}
@@ -44,7 +45,7 @@ def judge_vertex(port: Port, among: Bools | None = None) -> Judgement:
         bad["vertex.source"] = (found["vertex.source"] != _sources(model, points)).any(axis=1)
     contradicted = among is not None and any(wrong.any() for wrong in bad.values())
     if "vertex.color" in found and not contradicted:
-        lit = [model.colors(lighting, placed.world) for lighting in points.lightings]
+        lit = [model.colors(lighting, placed.world) for lighting in lightings(model, points)]
         wrong = [~allowed(branches, found["vertex.color"]) & points.usable for branches in lit]
         best = min(range(len(lit)), key=lambda i: int(wrong[i].sum()))
         bad["vertex.color"], branches = wrong[best], lit[best]
@@ -54,7 +55,19 @@ def judge_vertex(port: Port, among: Bools | None = None) -> Judgement:
         width = np.fmax(width, 2.0 * branches[0].color.deviation.max(axis=1))
     ordered = {name: _spread(len(every), index, bad[name] & points.usable) for name in ARRAYS if name in bad}
     undecided, width = _spread(len(every), index, undecided), _spread(len(every), index, width)
-    return judgement("vertex", "vertex", ordered, undecided, width, fed("splatting", ordered, handed))
+    return judgement(
+        "vertex", "vertex", ordered, undecided, width, fed("splatting", ordered, handed, str(model.case.params.shape))
+    )
+
+
+def lightings(model: Model, points: Table) -> list[Table]:
+    """Points with each set of normals that they may be lit with: that of ellipses is what they have their shapes by."""
+    return [points] if model.elliptic else points.lightings
+
+
+def has(model: Model, handed: Handed, name: str) -> bool:
+    """Whether an array was handed in that the case has: Gaussians are those of ellipses alone."""
+    return name in handed and (model.elliptic or name not in GAUSSIAN)
 
 
 def _spread(count: int, index: Ints, values: Any) -> Any:
@@ -68,6 +81,9 @@ def _placed(placed: Placed, found: dict[str, Floats]) -> tuple[dict[str, Bools],
     """Where arrays contradict both outcomes, kept and dropped; and how wide what is legal is."""
     count = len(placed.sure)
     numbers = {"vertex.window": placed.window, "vertex.depth": [placed.depth], "vertex.width": [placed.width]}
+    if placed.gaussian is not None:
+        *covariance, amplitude, distance = placed.gaussian.T
+        numbers |= dict(zip(GAUSSIAN, (covariance, [amplitude], [distance]), strict=True))
     kept, dropped = np.flatnonzero(placed.possible), np.flatnonzero(~placed.sure)
     agrees, width = [], np.full(count, np.nan)
     for name, array in found.items():
@@ -111,6 +127,8 @@ class Port:
     """By the right program."""
     chosen: list[Any] = field(default_factory=list)
     """What was asked for last of some of the points."""
+    given_normals: bool = False
+    """The points have the case's normals, whatever was handed in."""
 
     @cached_property
     def table(self) -> Table:
@@ -118,7 +136,16 @@ class Port:
         if self.right and self.model.fetches_of:
             return self.right.table
         changed = any(name.startswith("atlas.") for name in self.handed)
-        return self.model.table(self.handed) if changed else self.model.own
+        found = self.model.table(self.handed) if changed else self.model.own
+        return found.lightings[-1] if self.given_normals else found
+
+    @property
+    def ways(self) -> list[Port]:
+        """It alone; of ellipses, which have their shapes by normals, also with the case's where the port's are others."""
+        if not self.model.elliptic or self.given_normals or len(self.table.lightings) == 1:
+            return [self]
+        right = self.right and replace(self.right, given_normals=True, chosen=[])
+        return [self, replace(self, right=right, given_normals=True, chosen=[])]
 
     @cached_property
     def placed(self) -> Placed:
@@ -150,7 +177,7 @@ class Port:
 
 def landed(model: Model, points: Table, own: Placed, handed: Handed) -> Placed:
     """A point is kept as the port's width says, or its window position; where these are NaN, it is not drawn."""
-    given = {name: np.asarray(handed[name], np.float64) for name in PLACES if name in handed}
+    given = {name: np.asarray(handed[name], np.float64) for name in PLACES if has(model, handed, name)}
     if not given:
         return own
     do, kept = model.machine, np.ones(len(points), np.bool_)
@@ -164,7 +191,21 @@ def landed(model: Model, points: Table, own: Placed, handed: Handed) -> Placed:
     if "vertex.width" in given:
         width = stored(do, given["vertex.width"], own.width)
         kept &= given["vertex.width"] > 0.0
-    return Placed(window, depth, width, kept, kept, _twins(model, points, given), own.world)
+    twins = _twins(model, points, given)
+    return Placed(window, depth, width, kept, kept, twins, _gaussian(model, given, own), own.world)
+
+
+def _gaussian(model: Model, given: dict[str, Floats], own: Placed) -> Number | None:
+    """(V, 5) of ellipses, with what was handed in."""
+    if own.gaussian is None:
+        return None
+    columns = own.gaussian.T
+    for name, first in zip(GAUSSIAN, (0, 3, 4), strict=True):
+        if name in given:
+            found = given[name].reshape(len(columns[0]), -1).T
+            for k, array in enumerate(found, first):
+                columns[k] = stored(model.machine, array, columns[k])
+    return joined_columns(columns)
 
 
 def _twins(model: Model, points: Table, given: dict[str, Floats]) -> Ints | None:
@@ -172,7 +213,7 @@ def _twins(model: Model, points: Table, given: dict[str, Floats]) -> Ints | None
 
     Whatever a device does, it does the same for both, so that they tie. None: the port's own numbers are not known.
     """
-    if len(given) < len(PLACES):
+    if len(given) < len(PLACES if model.elliptic else PLACES[: -len(GAUSSIAN)]):
         return None
     cameras = [_seen_by(image.camera) for image in model.case.scene.images]
     if len(set(cameras)) == len(cameras):

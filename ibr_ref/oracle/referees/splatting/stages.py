@@ -7,13 +7,15 @@ from collections.abc import Iterator
 from ibr_ref.array_types import Bools
 from ibr_ref.oracle.judgement import Handed, Judgement
 from ibr_ref.oracle.referees.splatting import pixels, points, texels
+from ibr_ref.oracle.referees.splatting.blends import SUMS
 from ibr_ref.oracle.referees.splatting.model import Model
+from ibr_ref.oracle.referees.splatting.pixels import fewest
 
 ARRAYS = {
     "normals": ("atlas.normal",),
     "atlas": texels.ARRAYS,
     "vertex": points.ARRAYS,
-    "raster": pixels.ARRAYS,
+    "raster": (*pixels.ARRAYS, *SUMS),
     "resolve": ("color", "depth"),
 }
 """For each stage the arrays that it is compared by."""
@@ -59,9 +61,14 @@ class Stages:
         """One stage, or "image"."""
         if stage == "normals":
             return texels.judge_normals(self.port, self.among)
-        if stage == "vertex":
-            return points.judge_vertex(self.port, self.among)
+        if stage == "atlas":
+            return texels.judge_atlas(self.port)
         if stage == "image":
             return pixels.judge_image(self.port, self.among, thorough=self.thorough)
-        judges = {"atlas": texels.judge_atlas, "raster": pixels.judge_raster, "resolve": pixels.judge_resolve}
-        return judges[stage](self.port)
+        return fewest([self._judge(stage, port) for port in self.port.ways])
+
+    def _judge(self, stage: str, port: points.Port) -> Judgement:
+        if stage == "vertex":
+            return points.judge_vertex(port, self.among)
+        judges = {"raster": pixels.judge_raster, "resolve": pixels.judge_resolve}
+        return judges[stage](port)
