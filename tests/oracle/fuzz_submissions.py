@@ -25,6 +25,7 @@ import numpy as np
 from ibr_ref import oracle
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.findings import Outcome
+from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.report import page
 from ibr_ref.oracle.trials import judge
 from ibr_ref.oracle.verdict import Verdict
@@ -113,8 +114,14 @@ class Input:
     """By array what it is replaced by."""
     handed: dict[str, Any]
     profile: str
-    shows: bool
-    """Whether a replaced array differs from the reference's by what no device explains."""
+    apart: dict[str, Array]
+    """Of replaced arrays where they differ from the reference's by what no device explains; of all there is, where the size
+    is another."""
+
+    @property
+    def shows(self) -> bool:
+        """Whether any of them does."""
+        return any(where.any() for where in self.apart.values())
 
 
 @cache
@@ -138,43 +145,56 @@ def made(number: int, seed: int) -> Input:
         del handed["color"]
         handed = handed or dict(reference)
     changed = random.choice([*handed], size=min(len(handed), int(random.choice([1, 1, 1, 2, 3]))), replace=False)
-    changes, shows = {}, False
+    changes, apart = {}, {}
     for array in map(str, changed):
         pages = handed[array] if isinstance(handed[array], tuple) else (handed[array],)
         options = replacements(array, pages[0])
         changes[array] = str(random.choice([*options]))
         new = tuple(options[changes[array]](page, random) for page in pages)
-        shows |= any(differs(a, b) for a, b in zip(pages, new, strict=True))
+        found = [differs(a, b) for a, b in zip(pages, new, strict=True)]
+        apart[array] = found[0] if len(found) == 1 else np.array([where.any() for where in found])
         handed[array] = new if isinstance(handed[array], tuple) else new[0]
-    return Input(number, name, changes, handed, profile, shows)
+    return Input(number, name, changes, handed, profile, apart)
 
 
-def differs(ours: Array, theirs: Array) -> bool:
-    """Whether numbers differ by what shows."""
+def differs(ours: Array, theirs: Array) -> Array:
+    """Where numbers differ by what shows."""
     if ours.shape != theirs.shape:
-        return True
+        return np.ones(1, np.bool_)
     if ours.dtype.kind != "f":
-        return bool((ours != theirs).any())
+        return ours != theirs
     with np.errstate(all="ignore"):
         apart = np.abs(ours - theirs) > SHOWS * np.maximum(np.abs(ours), 1.0)
-    return bool((apart | (np.isfinite(ours) != np.isfinite(theirs))).any())
+    return apart | (np.isfinite(ours) != np.isfinite(theirs))
 
 
-def judged(one: Input, *, tell: bool) -> Outcome:
-    """What the judgements come to, with warnings as errors. tell: in all its forms, as whoever passes although it shows."""
+def decided(one: Input, judgements: list[Judgement]) -> bool:
+    """Whether what shows does so somewhere where a verdict can be had: elsewhere a device may compute anything."""
+    open_ = {name: judgement.undecided for judgement in judgements for name in judgement.arrays}
+    for name, where in one.apart.items():
+        undecided = open_.get(name)
+        if undecided is None or where.shape[: undecided.ndim] != undecided.shape:
+            if where.any():
+                return True
+        elif (where.reshape(*undecided.shape, -1).any(axis=-1) & ~undecided).any():
+            return True
+    return False
+
+
+def judged(one: Input, *, tell: bool) -> tuple[Outcome, bool]:
+    """What the judgements come to, with warnings as errors, and whether what shows is decided. tell: in all its forms."""
     case, _ = _reference(one.case)
     picture = {name: one.handed[name] for name in ("color", "depth") if name in one.handed}
     stages = {name: array for name, array in one.handed.items() if name not in picture}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         submission = oracle.submission_from_arrays(case, stages=stages, **picture)
-        if submission.problems or tell:
-            return told(one, submission)
+        if submission.problems:
+            return told(one, submission), one.shows
         with np.errstate(all="ignore"):  # as `examine` does
             judgements = judge(case, submission.handed, PROFILES[one.profile])
-        if not any(j.wrong.any() for j in judgements):
-            return told(one, submission) if one.shows else Outcome.PASS
-        return Outcome.FAIL
+        outcome = Outcome.FAIL if any(j.wrong.any() for j in judgements) else Outcome.PASS
+        return (told(one, submission) if tell else outcome), decided(one, judgements)
 
 
 def told(one: Input, submission: oracle.Submission) -> Outcome:
@@ -193,10 +213,10 @@ def told(one: Input, submission: oracle.Submission) -> Outcome:
 def complaint(one: Input, *, tell: bool = True) -> tuple[str, str | None]:
     """The outcome, and what is wrong with it."""
     try:
-        outcome = judged(one, tell=tell)
+        outcome, shows = judged(one, tell=tell)
     except Exception:  # what is looked for
         return "traceback", traceback.format_exc(limit=-4)
-    if outcome is Outcome.PASS and one.shows:
+    if outcome is Outcome.PASS and shows:
         return "PASS where it shows", f"PASS by {one.profile}"
     return str(outcome), None
 

@@ -16,6 +16,8 @@ from tests.oracle.fuzz_submissions import BLOCK, Input, complaint, made, replace
 from tests.oracle.tiny_cases import TINY, handed_of
 
 EACH = 6
+ANYWHERE = {"any": np.ones(1, np.bool_)}
+"""Where an input shows, of one that is all tampered with."""
 
 
 @pytest.mark.sampled(3)
@@ -37,9 +39,22 @@ def test_a_grid_that_covers_nothing(array: str, change: str) -> None:
     case = TINY["shadows-warp"]()
     handed = handed_of(case)
     handed[array] = replacements(array, handed[array])[change](handed[array], np.random.default_rng(0))
-    outcome, words = complaint(Input(0, "shadows-warp", {array: change}, handed, "ieee32", True))
+    outcome, words = complaint(Input(0, "shadows-warp", {array: change}, handed, "ieee32", ANYWHERE))
     assert words is None
     assert outcome in (Outcome.FAIL, Outcome.INCONCLUSIVE)
+
+
+def test_where_a_device_may_compute_anything_nothing_has_to_be_found() -> None:
+    """A NaN in one of a pixel's numbers, there and elsewhere."""
+    case = TINY["displacement-cut"]()
+    faces = {name: handed_of(case)[name] for name in ("raster.face", "march.steep")}
+    for pixel, passes in (((5, 5), True), ((8, 8), False)):
+        hit = handed_of(case)["march.hit"].copy()
+        apart = np.zeros(hit.shape, np.bool_)
+        hit[pixel][1], apart[pixel] = np.nan, True
+        assert np.isfinite(handed_of(case)["march.hit"][pixel]).all()
+        outcome, words = complaint(Input(0, case.name, {}, {**faces, "march.hit": hit}, "gl", {"march.hit": apart}))
+        assert (outcome, words) == (Outcome.PASS if passes else Outcome.FAIL, None), pixel
 
 
 def test_an_index_beyond_the_search_has_no_endless_trace() -> None:
@@ -57,7 +72,7 @@ def test_no_face_at_all(array: str) -> None:
     """A KeyError once, where the other of the two arrays was not handed in."""
     case = TINY["displacement-tile"]()
     handed = {array: handed_of(case)[array][:0]}
-    outcome, words = complaint(Input(0, "displacement-tile", {array: "no face"}, handed, "ieee32", True))
+    outcome, words = complaint(Input(0, "displacement-tile", {array: "no face"}, handed, "ieee32", ANYWHERE))
     assert (outcome, words) == (Outcome.FAIL, None)
 
 
@@ -68,7 +83,7 @@ def test_corners_that_are_no_numbers(name: str, change: str) -> None:
     handed["vertex.clip"] = replacements("vertex.clip", handed["vertex.clip"])[change](
         handed["vertex.clip"], np.random.default_rng(0)
     )
-    outcome, words = complaint(Input(1, name, {"vertex.clip": change}, handed, "ieee32", True))
+    outcome, words = complaint(Input(1, name, {"vertex.clip": change}, handed, "ieee32", ANYWHERE))
     assert words is None
     assert outcome in (Outcome.FAIL, Outcome.INCONCLUSIVE)
 
