@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ibr_ref.contract import is_margin
 from ibr_ref.oracle.bias import biases
 from ibr_ref.oracle.cases.case import Case
 from ibr_ref.oracle.conventions import conventions
@@ -62,8 +63,9 @@ def examine(
     unknown device.
     """
     declaration = declared(profile) if isinstance(profile, str) else profile or ANY
-    if problems or not handed:
-        reasons = tuple(problems) or ("nothing was handed in: allowed: color, depth or any stage",)
+    if problems or all(map(is_margin, handed)):
+        found = f"{', '.join(handed)} alone, which no port has right or wrong" if handed else "nothing"
+        reasons = tuple(problems) or (f"found {found}, allowed: color, depth or any stage",)
         return Examination(case=case, handed=handed, judgements=(), verdict=_unusable(case, reasons))
     if declaration.profile:
         trial, tried = _declared(case, handed, declaration.device(declaration.profile))
@@ -82,6 +84,7 @@ def examine(
         "tried": tried,
         "stages": tuple(_summary(case, trial.device, handed, j, explained.get(j.stage)) for j in judgements),
     }
+    fields["not_judged"] = tuple(name for name in handed if is_margin(name))
     image = next((j for j in judgements if j.stage == "image"), None)
     if image is not None:
         # Of what is drawn: a background is decided anywhere, and its width is none.

@@ -154,6 +154,8 @@ class Findings(_Record):
     """Devices in the order in which they were tried, and how many elements each leaves unexplained: all of them where the
     verdict is by that device, else those of the first entry of `stages` that it calls wrong."""
     stages: tuple[StageVerdict, ...] = ()
+    not_judged: tuple[str, ...] = ()
+    """Arrays that were handed in, and of which no port's are right or wrong: margins, and what a search costs."""
     first_wrong_stage: str | None = None
     needs: dict[str, int | str] = {}
     """What the device would have to have for that stage to be right."""

@@ -40,6 +40,8 @@ def words(verdict: Findings, *, trace: bool = True) -> str:
             "" if verdict.median_width is None else f", median width of the accepted colours {verdict.median_width:.2g}"
         )
         lines.append(f"  Undecided: {100 * verdict.undecided_share:.3f} % of the hit pixels{width}.")
+    if verdict.not_judged:
+        lines.append(f"  Not judged: {', '.join(verdict.not_judged)}; a port's own may be any.")
     return "\n".join(lines)
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ibr_ref.oracle import report
+from ibr_ref.oracle import check, report, submission_from_arrays
 from ibr_ref.oracle.examination import Examination, examine
 from ibr_ref.oracle.findings import Cause, Nearest, Outcome, StageVerdict
 from ibr_ref.oracle.judgement import Judgement
 from ibr_ref.oracle.verdict import Verdict
 from tests.oracle.plain_referee import box_case
+from tests.oracle.tiny_cases import TINY
 
 
 def part(array: str, element: str, elements: int, wrong: int = 0) -> StageVerdict:
@@ -63,3 +64,19 @@ def test_a_pair_and_what_comes_nearest_are_said() -> None:
     page = report.page(Examination(case=box_case(8, 6), handed={}, judgements=(), verdict=told))
     assert "Two bugs together: <strong>a and b</strong>" in page
     assert Verdict.model_validate_json(told.model_dump_json()) == told
+
+
+def test_what_is_handed_in_and_not_judged_is_said() -> None:
+    """What a search cost, and how close it was, is a port's own."""
+    case = TINY["displacement-relaxed_cone"]()
+    stages = {name: case.frame.stages[name] for name in ("march.hit", "march.fetches")}
+    examination = check(case, submission_from_arrays(case, stages=stages), profile="ieee32")
+    assert "  Not judged: march.fetches; a port's own may be any." in examination.verdict.words()
+    assert "Not judged: march.fetches" in report.page(examination)
+    alone = check(case, submission_from_arrays(case, stages={"march.hit": stages["march.hit"]}), profile="ieee32")
+    assert "Not judged" not in alone.verdict.words() + report.page(alone)
+    nothing = check(case, submission_from_arrays(case, stages={"march.fetches": stages["march.fetches"]})).verdict
+    assert nothing.outcome is Outcome.INCONCLUSIVE
+    assert nothing.reasons == (
+        "found march.fetches alone, which no port has right or wrong, allowed: color, depth or any stage",
+    )

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref import displacement
+from ibr_ref.contract import is_margin
 from ibr_ref.models.surface_depths import ball_depths
 from ibr_ref.oracle.cases import Case
 from ibr_ref.oracle.cases.shadow_meshes import block, grid, painted, plate
@@ -80,6 +81,28 @@ def cut() -> Case:
     return _displacement("cut", [_polygon()], params, near=1.7, far=2.6)
 
 
+def _below(method: str, **params: Any) -> Case:
+    """A system whose shapes sink below the polygon."""
+    polygon = _polygon(facade_map=None)
+    chosen = displacement.Params(method=method, **params)
+    return _displacement(method.replace("_", "-"), [polygon], chosen)
+
+
+def relief() -> Case:
+    """Linear and binary steps down from the polygon."""
+    return _below("relief", linear_steps=6, binary_steps=2)
+
+
+def relaxed_cone() -> Case:
+    """Steps of relaxed cones, and halvings."""
+    return _below("relaxed_cone", linear_steps=4, binary_steps=2)
+
+
+def maximum_mipmap() -> Case:
+    """A walk in a quadtree."""
+    return _below("maximum_mipmap")
+
+
 def _splatting(name: str, params: SplatParams, light: Light | None, **more: Any) -> Case:
     cameras = [looking((0.4, -3.0, 0.7), size=(9, 7)), looking((1.8, -2.2, 1.0), size=(8, 8))]
     view = more.pop("view", looking((0.9, -2.7, 0.9), size=(WIDTH, HEIGHT)))
@@ -98,6 +121,11 @@ def round_dots() -> Case:
     view = parallel((0.9, -2.7, 0.9), size=(WIDTH, HEIGHT))
     light = Light(position=(1.0, -2.5, 2.0), specular=0.3, exponent=5)
     return _splatting("round-dots", SplatParams(alpha=8.0, gamma=0.5, max_width=5.5, shape="disc"), light, view=view)
+
+
+def ovals() -> Case:
+    """Ellipses that are averaged, unlit."""
+    return _splatting("ovals", SplatParams(shape="ellipse", footprint=0.9, max_width=6.0, depth_tolerance=0.1), None)
 
 
 def _shadows(name: str, controls: Any = "bounds", **params: Any) -> Case:
@@ -146,12 +174,17 @@ def masks() -> Case:
     return _shadows("masks", method="direct", map_samples=2)
 
 
+def soft() -> Case:
+    """Percentage-closer soft shadows."""
+    return _shadows("soft", method="pcss", bias=4e-3, search_points=4, filter_points=5)
+
+
 TINY: dict[str, Callable[[], Case]] = {
     f"{method}-{build.__name__}": cache(build)
     for method, builds in (
-        ("displacement", (hill, pair, tile, cut)),
-        ("splatting", (dots, round_dots)),
-        ("shadows", (warp, many, deep, drawn, masks)),
+        ("displacement", (hill, pair, tile, cut, relief, relaxed_cone, maximum_mipmap)),
+        ("splatting", (dots, round_dots, ovals)),
+        ("shadows", (warp, many, deep, drawn, masks, soft)),
     )
     for build in builds
 }
@@ -159,6 +192,6 @@ TINY: dict[str, Callable[[], Case]] = {
 
 def handed_of(case: Case) -> dict[str, Any]:
     """The reference's own arrays as a port hands them in, the picture as floats; without what ports need not have."""
-    stages = {name: array for name, array in case.frame.stages.items() if "margin" not in name}
+    stages = {name: array for name, array in case.frame.stages.items() if not is_margin(name)}
     copied = {n: tuple(p.copy() for p in a) if isinstance(a, tuple) else a.copy() for n, a in stages.items()}
     return {**copied, "color": case.frame.color.copy(), "depth": case.frame.depth.copy()}
