@@ -44,6 +44,8 @@ class Device:
     """A position may go to either neighbour on the raster; else to the nearest, ties to even, as the reference's."""
     unsnapped: bool
     """Varyings may be interpolated over the triangle of the unsnapped corners."""
+    snapped: bool = True
+    """They may be interpolated over that of the snapped ones, as every profile grants; one of the two is so."""
     splat_border: float
     """How far a splat's border may lie from centre +- width / 2, the centre snapped as the reference's, in pixels."""
     minus_one: bool
@@ -58,7 +60,7 @@ class Device:
     """How far a stored byte may be from 255 c, in steps: 0.5 is the nearest."""
     sources: dict[str, str] = field(default_factory=dict)
     """For each number the clause that grants it."""
-    numbers: dict[str, int | str] = field(default_factory=dict)
+    numbers: dict[str, int | float | str] = field(default_factory=dict)
     """What was declared, or found necessary, beside the profile: `declaration.NUMBERS`."""
 
     @property
@@ -71,10 +73,20 @@ class Device:
         """How far a snapped position may lie from where the reference's lies, in pixels, besides its own rounding."""
         return 2.0**-self.subpixel_bits if self.subpixel_any else 0.0
 
+    @property
+    def varying_step(self) -> float:
+        """How far a corner that varyings are interpolated over may be snapped from where it is, in pixels."""
+        return 2.0**-self.subpixel_bits if self.snapped else 0.0
 
-def spelled(profile: str | None, numbers: Mapping[str, int | str]) -> str:
+
+def _text(value: float | str) -> str:
+    """Whole numbers without a point."""
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def spelled(profile: str | None, numbers: Mapping[str, int | float | str]) -> str:
     """As it is declared: "gl,subpixel_bits=4", or numbers alone."""
-    return ",".join([*([profile] if profile else []), *(f"{name}={value}" for name, value in numbers.items())])
+    return ",".join([*([profile] if profile else []), *(f"{name}={_text(value)}" for name, value in numbers.items())])
 
 
 _DEVICES: list[Device] = []

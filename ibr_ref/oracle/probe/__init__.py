@@ -12,6 +12,7 @@ from ibr_ref.oracle.probe.measured import DRIVER_FAULTS, Measured
 PROBES: dict[str, Room] = {
     "probe-polygons": Room("ibr_ref.oracle.probe.polygons"),
     "probe-sprites": Room("ibr_ref.oracle.probe.sprites"),
+    "probe-arithmetic": Room("ibr_ref.oracle.probe.arithmetic"),
 }
 """By the names of their cases: `probe_case()`, and `measure(case, arrays)` of a port's arrays, which raises ValueError for
 those that are missing or have another size."""
