@@ -129,6 +129,10 @@ def test_a_device_is_measured_and_taken(run: Run, tmp_path: Path) -> None:
         "texel_weight_bits": 0,
         "filter_result": "float",
         "depth_format": "float32",
+        "operation_ulps": 0.5,
+        "quotient_ulps": 0.5,
+        "root_ulps": 0.5,
+        "power_ulps": 0.5,
     }
     assert run("draw", CASE, tmp_path / "ball", "--with", "plain")[0] == 0
     assert run("check", CASE, tmp_path / "ball", "--device", tmp_path / "device.json")[0] == 0
