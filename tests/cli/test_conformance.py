@@ -119,7 +119,8 @@ def test_a_device_is_measured_and_taken(run: Run, tmp_path: Path) -> None:
     assert run("draw", tmp_path / "probes", tmp_path / "drawn", "--with", "plain")[0] == 0
     code, said, _ = run("probe", tmp_path / "probes", tmp_path / "drawn", "--out", tmp_path / "device.json")
     assert code == 0
-    assert said.splitlines()[0].startswith("subpixel_bits: 8, measured (")
+    assert said.splitlines()[0].startswith("operation_ulps: 0.5, measured (")
+    assert "\nsubpixel_bits: 8, measured (" in said
     assert said.splitlines()[-1] == "clip_z, clip_border, setup, unorm_rounding: assumed, as ieee32 grants them"
     document = json.loads((tmp_path / "device.json").read_text())
     assert document == {

@@ -1,4 +1,4 @@
-"""Devices measured: a case a method from which a port's own arrays say with which numbers its device computes.
+"""Devices measured: cases from which a port's own arrays say with which numbers its device computes.
 
 What no value of a number explains by far better than the others is assumed as the profile grants it. What a device does that
 no standard allows is a fault of its driver, with a name in `DRIVER_FAULTS`.
