@@ -74,6 +74,14 @@ class Device:
         return 2.0**-self.subpixel_bits if self.subpixel_any else 0.0
 
     @property
+    def wrapping(self) -> float:
+        """How much more than a shader's arithmetic a texture unit may round coordinates that it repeats, in units of 2^-24.
+
+        What is declared, and measured, is the shader's: units wrap in fixed point, and are as the profile grants.
+        """
+        return max(0.0, PROFILES[self.name].operation - self.operation)
+
+    @property
     def varying_step(self) -> float:
         """How far a corner that varyings are interpolated over may be snapped from where it is, in pixels."""
         return 2.0**-self.subpixel_bits if self.snapped else 0.0

@@ -120,6 +120,14 @@ def test_the_arithmetic_is_declared_in_units_in_the_last_place() -> None:
     assert [getattr(correct, name) for name in fields] == [getattr(PROFILES["ieee32"], name) for name in fields]
 
 
+def test_texture_units_that_wrap_are_as_the_profile_has_them() -> None:
+    """SwiftShader's shaders round correctly, and its repeated facades are a bound's tenth farther off than that."""
+    gl = PROFILES["gl"]
+    assert device_of("gl,operation_ulps=0.5").wrapping == gl.operation - 1.0
+    assert [device.wrapping for device in PROFILES.values()] == [0.0] * len(PROFILES)
+    assert device_of("vulkan,operation_ulps=0.5").wrapping == 0.0
+
+
 def test_what_varyings_are_interpolated_over() -> None:
     for over, found in {"snapped": (True, False), "unsnapped": (False, True), "either": (True, True)}.items():
         device = device_of(f"gl,varyings={over}")
