@@ -9,6 +9,7 @@ one that an API can be asked for, or that its standard gives a range of.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -26,10 +27,17 @@ DEPTH_STEPS = {"float32": 0.0, "unorm24": 2.0**-24, "unorm16": 2.0**-16}
 """Of depth buffers, by their formats."""
 
 
+class Between(NamedTuple):
+    """Any number from the one to the other, whole or not."""
+
+    least: float
+    most: float
+
+
 class Number(NamedTuple):
     """Something that can be declared."""
 
-    allowed: range | tuple[str, ...]
+    allowed: range | Between | tuple[str, ...]
     meaning: str
     """And whom to ask for it."""
     change: Callable[[Device, Any], dict[str, Any]]
@@ -44,6 +52,37 @@ def _subpixels(device: Device, bits: int) -> dict[str, Any]:
     # A step of a coarser raster holds the reference's rounding, one of a finer raster does not.
     return {"subpixel_bits": bits, "splat_border": max(scaled, apart) if 2.0**bits < RASTER else scaled + apart}
 
+
+def _power(device: Device, ulps: float) -> dict[str, Any]:
+    return {"logarithm": 2.0 * ulps, "exponential": 2.0 * ulps}
+
+
+ULPS = Between(0.5, 64.0)
+"""Units in the last place: 0.5 is correctly rounded. The arithmetic's own fields are in halves of them."""
+
+ARITHMETIC: dict[str, Number] = {
+    "operation_ulps": Number(
+        ULPS,
+        "ULP of a sum, a difference or a product, 0.5: correctly rounded, as Vulkan and WGSL want it; Direct3D 11: 1",
+        lambda device, ulps: {"operation": 2.0 * ulps},
+    ),
+    "quotient_ulps": Number(
+        ULPS,
+        "ULP of a quotient; Vulkan and WGSL: 2.5, Direct3D 11: 1",
+        lambda device, ulps: {"quotient": 2.0 * ulps},
+    ),
+    "root_ulps": Number(
+        ULPS,
+        "ULP of a square root; Vulkan and WGSL: 1 / inversesqrt, 4.5, Direct3D 11: 1",
+        lambda device, ulps: {"root": 2.0 * ulps},
+    ),
+    "power_ulps": Number(
+        ULPS,
+        "ULP of log2 x (of 1 where |log2 x| < 1) and of exp2 x (times 1 + |x|), of which pow is made; Vulkan and WGSL: 4",
+        _power,
+    ),
+}
+"""What probes measure one after the other. Denormal results may be flushed to 0 on every device."""
 
 NUMBERS: dict[str, Number] = {
     "subpixel_bits": Number(
@@ -63,9 +102,10 @@ NUMBERS: dict[str, Number] = {
         lambda device, result: {"filter_step": FILTER_BYTES if result == "unorm8" else 0.0},
     ),
     "varyings": Number(
-        ("snapped", "unsnapped"),
-        "the triangle that varyings are interpolated over: of the rasterized corners, or of those before snapping",
-        lambda device, over: {"unsnapped": over == "unsnapped"},
+        ("snapped", "unsnapped", "either"),
+        "the triangle that varyings are interpolated over: of the rasterized corners, of those before snapping, or of "
+        "either where that is not known",
+        lambda device, over: {"unsnapped": over != "snapped", "snapped": over != "unsnapped"},
     ),
     "clip_z": Number(
         ("zero_to_one", "minus_one_to_one"),
@@ -93,7 +133,24 @@ NUMBERS: dict[str, Number] = {
         "of a colour that is stored as bytes: to the nearest, or to either neighbour",
         lambda device, to: {"byte": 0.5 if to == "nearest" else 1.0},
     ),
+    **ARITHMETIC,
 }
+
+
+def _is_allowed(value: Any, allowed: range | Between | tuple[str, ...]) -> bool:
+    """Whether it may be declared: a word, a whole number, or any number."""
+    if isinstance(allowed, Between):
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        return number and allowed.least <= value <= allowed.most
+    whole = isinstance(value, int) and not isinstance(value, bool)
+    return value in allowed and whole == isinstance(allowed, range)
+
+
+def _span(allowed: range | Between | tuple[str, ...]) -> str:
+    """In words."""
+    if isinstance(allowed, Between):
+        return f"{allowed.least:g} to {allowed.most:g}"
+    return f"{allowed[0]} to {allowed[-1]}" if isinstance(allowed, range) else " | ".join(allowed)
 
 
 @dataclass(frozen=True)
@@ -112,10 +169,8 @@ class Declaration:
         for name, value in self.numbers.items():
             checks.choice("device", name, [*NUMBERS])
             allowed = NUMBERS[name].allowed
-            whole = isinstance(value, int) and not isinstance(value, bool)
-            if value not in allowed or whole != isinstance(allowed, range):
-                span = f"{allowed[0]} to {allowed[-1]}" if isinstance(allowed, range) else " | ".join(allowed)
-                raise checks.reject(name, value, span)
+            if not _is_allowed(value, allowed):
+                raise checks.reject(name, value, _span(allowed))
 
     def __bool__(self) -> bool:
         return self.profile is not None or bool(self.numbers)
@@ -158,8 +213,10 @@ def device_of(text: str) -> Device:
 
 
 def _value(name: str, text: str) -> Any:
-    """A whole number where one is allowed, else the word."""
+    """A number where one is allowed, else the word."""
     allowed = NUMBERS[name].allowed if name in NUMBERS else ()
+    if isinstance(allowed, Between):
+        return float(text) if re.fullmatch(r"[0-9]+(\.[0-9]*)?", text, re.ASCII) else text
     return int(text) if isinstance(allowed, range) and text.isascii() and text.isdigit() else text
 
 

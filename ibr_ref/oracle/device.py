@@ -44,6 +44,8 @@ class Device:
     """A position may go to either neighbour on the raster; else to the nearest, ties to even, as the reference's."""
     unsnapped: bool
     """Varyings may be interpolated over the triangle of the unsnapped corners."""
+    snapped: bool
+    """They may be interpolated over that of the snapped ones."""
     splat_border: float
     """How far a splat's border may lie from centre +- width / 2, the centre snapped as the reference's, in pixels."""
     minus_one: bool
@@ -58,7 +60,7 @@ class Device:
     """How far a stored byte may be from 255 c, in steps: 0.5 is the nearest."""
     sources: dict[str, str] = field(default_factory=dict)
     """For each number the clause that grants it."""
-    numbers: dict[str, int | str] = field(default_factory=dict)
+    numbers: dict[str, int | float | str] = field(default_factory=dict)
     """What was declared, or found necessary, beside the profile: `declaration.NUMBERS`."""
 
     @property
@@ -71,10 +73,28 @@ class Device:
         """How far a snapped position may lie from where the reference's lies, in pixels, besides its own rounding."""
         return 2.0**-self.subpixel_bits if self.subpixel_any else 0.0
 
+    @property
+    def wrapping(self) -> float:
+        """How much more than a shader's arithmetic a texture unit may round coordinates that it repeats, in units of 2^-24.
 
-def spelled(profile: str | None, numbers: Mapping[str, int | str]) -> str:
+        What is declared, and measured, is the shader's: units wrap in fixed point, and are as the profile grants.
+        """
+        return max(0.0, PROFILES[self.name].operation - self.operation)
+
+    @property
+    def varying_step(self) -> float:
+        """How far a corner that varyings are interpolated over may be snapped from where it is, in pixels."""
+        return 2.0**-self.subpixel_bits if self.snapped else 0.0
+
+
+def _text(value: float | str) -> str:
+    """Whole numbers without a point."""
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def spelled(profile: str | None, numbers: Mapping[str, int | float | str]) -> str:
     """As it is declared: "gl,subpixel_bits=4", or numbers alone."""
-    return ",".join([*([profile] if profile else []), *(f"{name}={value}" for name, value in numbers.items())])
+    return ",".join([*([profile] if profile else []), *(f"{name}={_text(value)}" for name, value in numbers.items())])
 
 
 _DEVICES: list[Device] = []
@@ -112,6 +132,7 @@ IEEE32 = _device(
     subpixel_bits=(8, "the conventions of this reference: 1/256 pixel"),
     subpixel_any=(False, "the conventions of this reference: nearest, ties to even"),
     unsnapped=(False, "the conventions of this reference: barycentrics of the snapped positions"),
+    snapped=(True, "the conventions of this reference: barycentrics of the snapped positions"),
     splat_border=(0.0, "the conventions of this reference: only the centre is snapped, the width is not"),
     minus_one=(False, "the conventions of this reference: 0 <= z <= w"),
     clip_border=(False, "the conventions of this reference: x and y are cut far beyond the picture"),
@@ -134,6 +155,7 @@ D3D11 = _device(
     subpixel_bits=(8, f"{_D3D}, rasterizer: 16.8 fixed point window positions"),
     subpixel_any=(True, f"{_D3D}, conversion to fixed point: within 0.6 ULP of the target"),
     unsnapped=(False, f"{_D3D}, rasterizer: vertices are snapped before the triangle is set up"),
+    snapped=(True, f"{_D3D}, rasterizer: vertices are snapped before the triangle is set up"),
     splat_border=(1.1 * 2.0**-8, f"{_D3D}, 3.2.4.1: a quad's corners within 0.6 steps; {_CENTRE}"),
     minus_one=(False, f"{_D3D}, clipping: 0 <= z <= w"),
     clip_border=(False, f"{_D3D}, rasterizer: a guard band around the viewport"),
@@ -155,6 +177,7 @@ VULKAN = _device(
     subpixel_bits=(8, "Vulkan 1.3, limits: subPixelPrecisionBits, 8 on desktop implementations (at least 4)"),
     subpixel_any=(True, "Vulkan 1.3, Rasterization: the rounding to subPixelPrecisionBits is not specified"),
     unsnapped=(False, "Vulkan 1.3, Basic Polygon Rasterization: interpolation by the areas of the rasterized polygon"),
+    snapped=(True, "Vulkan 1.3, Basic Polygon Rasterization: interpolation by the areas of the rasterized polygon"),
     splat_border=(
         1.5 * 2.0**-8,
         f"Vulkan 1.3, Rasterization: a quad's corners at either neighbour on the raster; {_CENTRE}",
@@ -182,6 +205,7 @@ WEBGPU = _device(
         True,
         "WebGPU, Rasterization: interpolation by barycentric coordinates, the positions' precision not said",
     ),
+    snapped=(True, "WebGPU leaves rasterization to the API below"),
     splat_border=(1.5 * 2.0**-8, f"WebGPU, Rasterization: a quad's corners as any positions; {_CENTRE}"),
     minus_one=(False, "WebGPU, Coordinate Systems: 0 <= z <= w"),
     clip_border=(True, "WebGPU, Primitive Clipping: the clip volume, -w <= x, y <= w"),
@@ -206,6 +230,7 @@ GL = _device(
     subpixel_bits=(8, "OpenGL 4.6, Implementation Dependent Values: SUBPIXEL_BITS at least 4, 8 on desktops"),
     subpixel_any=(True, "OpenGL 4.6, Basic Polygon Rasterization: the rounding of window positions is not specified"),
     unsnapped=(True, "OpenGL 4.6, Basic Polygon Rasterization: by areas of the triangle, snapped or not is not said"),
+    snapped=(True, "OpenGL 4.6, Basic Polygon Rasterization: by areas of the triangle, snapped or not is not said"),
     splat_border=(
         1.5 * 2.0**-8,
         f"OpenGL 4.6, Points: a sprite's size has a granularity, here 1/256; quads: {_CENTRE}",

@@ -146,7 +146,7 @@ class Findings(_Record):
     """Of an INCONCLUSIVE: what is missing or unusable."""
     profile: str | None = None
     """PASS: the tightest profile tried that explains every element. FAIL: the one that the counts are by."""
-    numbers: dict[str, int | str] = {}
+    numbers: dict[str, int | float | str] = {}
     """What the device has beside the profile: declared, or found to be needed (`declaration.NUMBERS`)."""
     declared: bool = False
     """Whether the port, or the caller, named the profile."""
@@ -157,7 +157,7 @@ class Findings(_Record):
     not_judged: tuple[str, ...] = ()
     """Arrays that were handed in, and of which no port's are right or wrong: margins, and what a search costs."""
     first_wrong_stage: str | None = None
-    needs: dict[str, int | str] = {}
+    needs: dict[str, int | float | str] = {}
     """What the device would have to have for that stage to be right."""
     causes: tuple[Cause, ...] | None = None
     """Known bugs that explain the stage; several: this case does not tell them apart; none: no known one does. None where

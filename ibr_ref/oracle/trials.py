@@ -23,7 +23,7 @@ FREEDOMS: dict[str, Any] = {"subpixel_bits": 4, "filter_result": "unorm8"}
 LIMITS: dict[str, Any] = {
     "depth_format": "unorm16",
     "texel_weight_bits": 8,
-    "varyings": "unsnapped",
+    "varyings": "either",
     "clip_z": "minus_one_to_one",
     "clip_border": "allowed",
     "setup": "whole",

@@ -121,7 +121,8 @@ def test_a_device_is_measured_and_taken(run: Run, tmp_path: Path) -> None:
     assert run("draw", tmp_path / "probes", tmp_path / "drawn", "--with", "plain")[0] == 0
     code, said, _ = run("probe", tmp_path / "probes", tmp_path / "drawn", "--out", tmp_path / "device.json")
     assert code == 0
-    assert said.splitlines()[0].startswith("subpixel_bits: 8, measured (")
+    assert said.splitlines()[0].startswith("operation_ulps: 0.5, measured (")
+    assert "\nsubpixel_bits: 8, measured (" in said
     assert said.splitlines()[-1] == "clip_z, clip_border, setup, unorm_rounding: assumed, as ieee32 grants them"
     document = json.loads((tmp_path / "device.json").read_text())
     assert document == {
@@ -131,6 +132,10 @@ def test_a_device_is_measured_and_taken(run: Run, tmp_path: Path) -> None:
         "texel_weight_bits": 0,
         "filter_result": "float",
         "depth_format": "float32",
+        "operation_ulps": 0.5,
+        "quotient_ulps": 0.5,
+        "root_ulps": 0.5,
+        "power_ulps": 0.5,
     }
     assert run("draw", CASE, tmp_path / "ball", "--with", "plain")[0] == 0
     assert run("check", CASE, tmp_path / "ball", "--device", tmp_path / "device.json")[0] == 0

@@ -12,7 +12,7 @@ import pytest
 
 from ibr_ref import oracle
 from ibr_ref.oracle.arithmetic.device import Policy
-from ibr_ref.oracle.declaration import ANY, FILTER_BYTES, NUMBERS, Declaration, declared, device_of
+from ibr_ref.oracle.declaration import ANY, ARITHMETIC, FILTER_BYTES, NUMBERS, Declaration, declared, device_of
 from ibr_ref.oracle.device import PROFILES
 from ibr_ref.oracle.findings import Outcome
 from ibr_ref.oracle.self_test import plain_port
@@ -31,6 +31,7 @@ def drawn(name: str, policy: Policy, port: Any = None) -> tuple[oracle.Case, dic
         ("gl,subpixel_bits=4", "gl", {"subpixel_bits": 4}),
         ("subpixel_bits=4, filter_result=unorm8", None, {"subpixel_bits": 4, "filter_result": "unorm8"}),
         ("d3d11,depth_format=float32", "d3d11", {"depth_format": "float32"}),
+        ("gl,operation_ulps=0.5,root_ulps=2", "gl", {"operation_ulps": 0.5, "root_ulps": 2}),
     ],
 )
 def test_texts(text: str, profile: str | None, numbers: dict[str, Any]) -> None:
@@ -55,6 +56,10 @@ def test_files(tmp_path: Path) -> None:
         ("gl,subpixel_bits=3", "subpixel_bits: found 3, allowed: 4 to 16"),
         ("gl,subpixel_bits=four", "subpixel_bits: found 'four', allowed: 4 to 16"),
         ("gl,filter_result=unorm16", "filter_result: found 'unorm16', allowed: float | unorm8"),
+        ("gl,quotient_ulps=0.4", "quotient_ulps: found 0.4, allowed: 0.5 to 64"),
+        ("gl,quotient_ulps=1e3", "quotient_ulps: found '1e3', allowed: 0.5 to 64"),
+        ("gl,power_ulps=nan", "power_ulps: found 'nan', allowed: 0.5 to 64"),
+        ("gl,varyings=any", "varyings: found 'any', allowed: snapped | unsnapped | either"),
         ("gl,subpixel_bits=4,subpixel_bits=8", "device: found 'subpixel_bits twice', allowed: each number once"),
         ("", "device: found '', allowed: ieee32 | "),
     ],
@@ -65,7 +70,19 @@ def test_what_is_none(text: str, message: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["[]", "nothing", '{"profile": 4}', '{"subpixel_bits": 4.0}', '{"subpixel_bits": true}', "[" * 9999]
+    "text",
+    [
+        "[]",
+        "nothing",
+        '{"profile": 4}',
+        '{"subpixel_bits": 4.0}',
+        '{"subpixel_bits": true}',
+        '{"root_ulps": true}',
+        '{"root_ulps": "1"}',
+        '{"root_ulps": NaN}',
+        '{"root_ulps": 65}',
+        "[" * 9999,
+    ],
 )
 def test_bad_files_are_one_line(text: str, tmp_path: Path) -> None:
     path = tmp_path / "device.json"
@@ -82,11 +99,40 @@ def test_numbers_change_what_they_say() -> None:
     assert changed.words == "gl,subpixel_bits=4,filter_result=unorm8,clip_z=zero_to_one"
     assert (changed.snap, changed.splat_border) == (16 * gl.snap, 16 * gl.splat_border)
     assert (changed.filter_step, changed.minus_one) == (FILTER_BYTES, False)
-    same = device_of(
-        "gl,subpixel_bits=8,texel_weight_bits=8,filter_result=float,varyings=unsnapped,unorm_rounding=either"
-    )
+    same = device_of("gl,subpixel_bits=8,texel_weight_bits=8,filter_result=float,varyings=either,unorm_rounding=either")
     assert {**vars(same), "numbers": {}} == vars(gl)
     assert all(number.meaning for number in NUMBERS.values())
+
+
+def test_the_arithmetic_is_declared_in_units_in_the_last_place() -> None:
+    """Of which the profiles have halves."""
+    text = "operation_ulps=0.5,quotient_ulps=2.5,root_ulps=1,power_ulps=3"
+    device = device_of(f"gl,{text}")
+    assert device.words == f"gl,{text}"
+    assert (device.operation, device.quotient, device.root) == (
+        1.0,
+        PROFILES["vulkan"].quotient,
+        PROFILES["d3d11"].root,
+    )
+    assert (device.logarithm, device.exponential) == (6.0, 6.0)
+    correct = declared(",".join(f"{name}=0.5" for name in ARITHMETIC)).device("gl")
+    fields = ("operation", "quotient", "root", "logarithm", "exponential")
+    assert [getattr(correct, name) for name in fields] == [getattr(PROFILES["ieee32"], name) for name in fields]
+
+
+def test_texture_units_that_wrap_are_as_the_profile_has_them() -> None:
+    """SwiftShader's shaders round correctly, and its repeated facades are a bound's tenth farther off than that."""
+    gl = PROFILES["gl"]
+    assert device_of("gl,operation_ulps=0.5").wrapping == gl.operation - 1.0
+    assert [device.wrapping for device in PROFILES.values()] == [0.0] * len(PROFILES)
+    assert device_of("vulkan,operation_ulps=0.5").wrapping == 0.0
+
+
+def test_what_varyings_are_interpolated_over() -> None:
+    for over, found in {"snapped": (True, False), "unsnapped": (False, True), "either": (True, True)}.items():
+        device = device_of(f"gl,varyings={over}")
+        assert (device.snapped, device.unsnapped) == found
+    assert all(device.snapped for device in PROFILES.values())
 
 
 COARSE = Policy(subpixel_bits=4, subpixel_rounding="down")

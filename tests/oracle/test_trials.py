@@ -105,7 +105,7 @@ def test_what_the_first_wrong_stage_would_need(monkeypatch: pytest.MonkeyPatch) 
     assert needed(box_case(), handed, failed) == {"filter_result": "unorm8"}
 
 
-@pytest.mark.parametrize("numbers", [("depth_format=unorm16",), ("varyings=unsnapped", "clip_border=allowed")], ids=str)
+@pytest.mark.parametrize("numbers", [("depth_format=unorm16",), ("varyings=either", "clip_border=allowed")], ids=str)
 def test_what_a_declared_device_has_too_little_of(numbers: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ibr_ref.oracle.trials.referee", lambda method: Coarse(numbers))
     handed = {**STAGES, "color": np.zeros(1)}

@@ -15,7 +15,8 @@ each of the terms. An error of t itself moves the corner along its edge, with al
 where the polygon ends, beside the picture.
 
 **Places.** Corners of a piece are snapped, as any. A pixel within the snapped piece has weights of 0 to 1 there, which add
-up to 1: the point that they belong to is off by no more than a corner is.
+up to 1: the point that they belong to is off by no more than a corner is. Where varyings are interpolated over unsnapped
+corners alone, those are off by their arithmetic only.
 """
 
 from __future__ import annotations
@@ -64,8 +65,8 @@ class Cut:
         crossing = self.crossings * CROSSING * device.operation * UNIT
         for piece in map(list, combinations(range(len(self.x)), 3)):
             x, y, off = self.x[piece], self.y[piece], self.off[piece]
-            reach = off + 2.0**-device.subpixel_bits
-            here = np.flatnonzero(_within(x, y, reach, px, py))
+            here = np.flatnonzero(_within(x, y, off + 2.0**-device.subpixel_bits, px, py))
+            reach = off + device.varying_step
             if not len(here):
                 continue
             dx, dy = (np.abs(np.roll(a, -2) - np.roll(a, -1)) for a in (x, y))

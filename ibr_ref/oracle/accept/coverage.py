@@ -52,8 +52,10 @@ class Corners:
     y: Floats
     off: Floats
     """How far a legal device's corner may lie from here, along each axis."""
+    varying_x: Floats
+    """Of the corners that varyings are interpolated between, and how far those may lie elsewhere."""
+    varying_y: Floats
     varying_off: Floats
-    """The same of the corners that varyings are interpolated between."""
     area: Floats
     """(T,) twice the area."""
     turned: Bools
@@ -81,6 +83,14 @@ def snapped(x: Bounded) -> tuple[Floats, Floats]:
     return reference / RASTER, np.where(x.error > 0.0, off, 0.0) / RASTER
 
 
+def of_varyings(x: Bounded) -> tuple[Floats, Floats]:
+    """The same of what varyings are interpolated over: the snapped coordinates, those before, or either of them."""
+    if not x.device.snapped:
+        return x.value, np.broadcast_to(x.error, x.value.shape)
+    at, off = snapped(x)
+    return at, np.maximum(off, np.abs(at - x.value) + x.error) if x.device.unsnapped else off
+
+
 def fragments(
     x: Bounded, y: Bounded, width: int, height: int, owns_border: Callable[[int, int], bool] | None = None
 ) -> Fragments:
@@ -99,6 +109,8 @@ def fragments(
     loose = slack > 0.0
     possible = _all((-slack <= edges) & loose | reference)
     possible &= (area > 0.0) | loose[:, 0] | loose[:, 1] | loose[:, 2]
+    if not x.device.snapped:
+        edges = _edge_functions(corners, (corners.varying_x, corners.varying_y), triangle, px, py)
     weights, error, moved = _weights(corners, triangle, edges)
     turned = corners.turned[triangle]
     inside[turned], weights[turned] = inside[turned][:, [0, 2, 1]], weights[turned][:, [0, 2, 1]]
@@ -124,16 +136,22 @@ def _all(edges: Bools) -> Bools:
 def _corners(x: Bounded, y: Bounded) -> Corners:
     (at_x, off_x), (at_y, off_y) = snapped(x), snapped(y)
     off = np.maximum(off_x, off_y)
-    varying_off = off
-    if x.device.unsnapped:
-        unsnapped = np.maximum(np.abs(at_x - x.value) + x.error, np.abs(at_y - y.value) + y.error)
-        varying_off = np.maximum(off, unsnapped)
+    (over_x, over_off_x), (over_y, over_off_y) = of_varyings(x), of_varyings(y)
     area = (at_x[:, 1] - at_x[:, 0]) * (at_y[:, 2] - at_y[:, 0]) - (at_y[:, 1] - at_y[:, 0]) * (at_x[:, 2] - at_x[:, 0])
     turned = area < 0.0
     order = np.where(np.asarray(turned)[:, None], [0, 2, 1], [0, 1, 2])
-    x_turned, y_turned, off_turned = (np.take_along_axis(a, order, axis=1) for a in (at_x, at_y, off))
-    varying_turned = off_turned if varying_off is off else np.take_along_axis(varying_off, order, axis=1)
-    return Corners(x_turned, y_turned, off_turned, varying_turned, np.abs(area), np.asarray(turned))
+    places = (at_x, at_y, off, over_x, over_y, np.maximum(over_off_x, over_off_y))
+    snapped_x, snapped_y, moves, *varying = (np.take_along_axis(a, order, axis=1) for a in places)
+    return Corners(
+        x=snapped_x,
+        y=snapped_y,
+        off=moves,
+        varying_x=varying[0],
+        varying_y=varying[1],
+        varying_off=varying[2],
+        area=np.abs(area),
+        turned=np.asarray(turned),
+    )
 
 
 def _near(corners: Corners, width: int, height: int) -> tuple[Ints, Ints, Ints]:
@@ -178,11 +196,18 @@ def _edges(corners: Corners, triangle: Ints, px: Floats, py: Floats) -> tuple[Fl
     """(n, 3) the edge functions, and how much moved corners change them."""
     x, y = corners.x[triangle], corners.y[triangle]
     away = np.abs(px[:, None] - x) + np.abs(py[:, None] - y)
+    edges = _edge_functions(corners, (corners.x, corners.y), triangle, px, py)
+    return edges, _slack(corners.off[triangle], away)
+
+
+def _edge_functions(corners: Corners, places: tuple[Floats, Floats], triangle: Ints, px: Floats, py: Floats) -> Floats:
+    """(n, 3) of triangles with corners at `places` (T, 3)."""
+    x, y = (place[triangle] for place in places)
     edges = np.empty_like(x)
     for i in range(3):
         a, b = corners.edge(i)
         edges[:, i] = (x[:, b] - x[:, a]) * (py - y[:, a]) - (y[:, b] - y[:, a]) * (px - x[:, a])
-    return edges, _slack(corners.off[triangle], away)
+    return edges
 
 
 def _slack(off: Floats, away: Floats) -> Floats:
@@ -194,15 +219,16 @@ def _slack(off: Floats, away: Floats) -> Floats:
 
 
 def _weights(corners: Corners, triangle: Ints, edges: Floats) -> tuple[Floats, Floats, Floats]:
-    """(n, 3) the edge functions' shares of the area; (n,) by how much a legal device's may differ, and `Fragments.moved`.
+    """(n, 3) shares of the varyings' edge functions; (n,) by how much a legal device's may differ, and `Fragments.moved`.
 
     e <= G sum (|w_i| + e) off_i with the steepest gradient G of the three weights, solved for e.
     """
-    x, y, off = corners.x, corners.y, corners.varying_off
+    x, y, off = corners.varying_x, corners.varying_y, corners.varying_off
+    area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0])
     reach = [abs(x[:, b] - x[:, a]) + abs(y[:, b] - y[:, a]) for a, b in map(corners.edge, range(3))]
     with np.errstate(divide="ignore", invalid="ignore"):
-        weights = edges / corners.area[triangle, None]
-        gradient = np.max(reach, axis=0) / corners.area
+        weights = edges / area[triangle, None]
+        gradient = np.max(reach, axis=0) / np.abs(area)
         room = (1.0 - gradient * off.sum(axis=1))[triangle]
         terms = np.abs(weights) * off[triangle]
         moved = np.where(room > 0.0, (terms[:, 0] + terms[:, 1] + terms[:, 2]) / room, np.inf)

@@ -70,7 +70,8 @@ class Whole:
             shares=shares,
             own=most * self.relative,
             anchors=(self.anchor,),
-            moved=moved + 0.5 / RASTER,  # the reference's own corners are snapped as well
+            # The reference's own corners are snapped as well.
+            moved=moved + (0.5 / RASTER if device.snapped else 0.0),
         )
 
 
@@ -86,7 +87,7 @@ def whole(clip: Floats, error: Floats, size: tuple[int, int], device: Device) ->
     ndc = clip[:, :2] / w[:, None]
     roundings = (device.quotient + 3.0 * device.operation) * UNIT * (1.0 + np.abs(ndc))
     slack = (error[:, :2] + np.abs(ndc) * error[:, 3:]) / room[:, None] + roundings
-    step = 2.0**-device.subpixel_bits
+    step = device.varying_step
     return Whole(
         x=(ndc[:, 0] + 1.0) * half[0],
         y=(1.0 - ndc[:, 1]) * half[1],

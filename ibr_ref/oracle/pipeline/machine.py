@@ -48,7 +48,9 @@ class Machine(Bounds):
             return found.off_by(off)
         texture = self._texture(texels, repeat)
         height, width = texture.texels.shape[:2]
-        return fetch(self, texture, self._position(self.of(u), width), self._position(self.of(v), height))
+        return fetch(
+            self, texture, *(self._position(self.of(x), size, repeat) for x, size in ((u, width), (v, height)))
+        )
 
     def below_highest(self, texels: Any, u: Any, v: Any, h: Any, repeat: bool) -> Ints:
         """The samples that are not certainly above every texel around them."""
@@ -85,12 +87,12 @@ class Machine(Bounds):
             self._textures[key] = texels, Texture(np.asarray(texels), repeat)
         return self._textures[key][1]
 
-    def _position(self, coordinate: Number, size: int) -> Number:
+    def _position(self, coordinate: Number, size: int, repeat: bool) -> Number:
         positions = self.run.positions
         if positions is None:
-            return texel_position(self, coordinate, size)
-        key = id(coordinate), size
+            return texel_position(self, coordinate, size, repeat)
+        key = id(coordinate), size, repeat
         if key not in positions:
-            positions[key] = coordinate, self.named("texel", texel_position(self, coordinate, size))
+            positions[key] = coordinate, self.named("texel", texel_position(self, coordinate, size, repeat))
         found: Number = positions[key][1]
         return found

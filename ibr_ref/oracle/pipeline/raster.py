@@ -92,15 +92,16 @@ def fragments_of(program: Any, polygons: Faces, unclipped: Faces, polygon: int, 
     off = np.array([[0.0 if each is None else each.moved] for each in cuts])
     x, y = (_bounded(c, 0.5 - program.centre(), device).widened(off) for c in (x, y))
     found = coverage.fragments(x, y, width, height, owns_border=program.owns_border)
-    at_x, at_y = coverage.snapped(x)[0], coverage.snapped(y)[0]
+    at_x, at_y = (coverage.snapped(c)[0] for c in (x, y))
     area = (at_x[:, 1] - at_x[:, 0]) * (at_y[:, 2] - at_y[:, 0]) - (at_y[:, 1] - at_y[:, 0]) * (at_x[:, 2] - at_x[:, 0])
     # Corners that are no numbers cover nothing, whichever way round.
     drawn = np.array([bool(program.draws_orientation(int(np.nan_to_num(np.sign(a))))) for a in area], np.bool_)
     shift = program.varying_centre() - program.centre()
-    value, rounding, gradient = _weights(found, at_x, at_y, area, device, shift)
+    over = coverage.of_varyings(x)[0], coverage.of_varyings(y)[0]
+    value, rounding, gradient = _weights(found, *over, (width, height), device, shift)
     values = np.array([[c.value[:, k] for k in range(3)] for c in corners]).reshape(-1, 3, 7)
     wholes = _wholes(program, polygons, unclipped, device)
-    pieces, moved = _pieces([*enumerate(cuts), *enumerate(wholes)], found, (at_x, at_y, values), device)
+    pieces, moved = _pieces([*enumerate(cuts), *enumerate(wholes)], found, (*over, values), device)
     t, pixel = found.triangle, found.rows * width + found.columns
     kept = ~np.array([program.may_lie_in_a_plane(vertices) for _, vertices in triangles], np.bool_)
     result = Fragments(
@@ -188,10 +189,15 @@ def _pieces(
 
 
 def _weights(
-    found: coverage.Fragments, x: Floats, y: Floats, area: Floats, device: Device, shift: float
+    found: coverage.Fragments, x: Floats, y: Floats, size: tuple[int, int], device: Device, shift: float
 ) -> tuple[Floats, Floats, Floats]:
-    """Weights, their roundings and gradients; at `shift` from the pixels' centres."""
+    """Weights, their roundings and gradients; at `shift` from the pixels' centres.
+
+    What is interpolated over unsnapped corners alone is known so well that it counts where planes are anchored: with the
+    picture's corner between, as in borders.py.
+    """
     px, py, t = found.columns + 0.5, found.rows + 0.5, found.triangle
+    area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0])
     rounding, gradient = np.empty_like(found.weights), np.empty((len(x), 3, 2))
     units = (EDGE_ROUNDINGS * device.operation + device.quotient) * UNIT
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -200,6 +206,10 @@ def _weights(
             dx, dy = x[:, b] - x[:, a], y[:, b] - y[:, a]
             gradient[:, i] = np.stack([-dy / area, dx / area], axis=1)
             products = np.abs(dx[t] * (py - y[t, a])) + np.abs(dy[t] * (px - x[t, a]))
+            if not device.snapped:
+                across = px + np.abs(x).max(axis=1)[t]
+                down = np.maximum(py + np.abs(y).max(axis=1)[t], size[1] - py + np.abs(size[1] - y).max(axis=1)[t])
+                products = np.abs(dx[t]) * down + np.abs(dy[t]) * across
             rounding[:, i] = units * products / np.abs(area[t])
     value = found.weights + shift * gradient[t].sum(axis=2)
     return value, rounding, gradient[t]

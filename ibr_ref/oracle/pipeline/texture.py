@@ -14,9 +14,11 @@ from ibr_ref.oracle.arithmetic.number import Number
 from ibr_ref.oracle.arithmetic.symbols import all_of, over_symbols
 
 
-def texel_position(do: Bounds, coordinate: Number, size: int) -> Number:
+def texel_position(do: Bounds, coordinate: Number, size: int, repeat: bool) -> Number:
     """Where a coordinate lies, in texels from the first one's centre, with the rounding of weights."""
     x = do.subtract(do.multiply(coordinate, float(size)), 0.5)
+    if repeat and do.device.wrapping:
+        x = x.off_by(2.0 * do.device.wrapping * UNIT * (np.abs(x.value) + 1.0))
     return x.off_by(do.device.weight_step)
 
 
@@ -48,7 +50,10 @@ def fetch(do: Bounds, texture: Texture, x: Number, y: Number) -> Number:
 
 def below_highest(do: Bounds, texture: Texture, u: Number, v: Number, h: Number) -> Ints:
     """The samples (u, v, h) that are not certainly above every texel that a fetch there may see."""
-    off = 2.0 * do.device.operation * UNIT  # of u W and of - 0.5, relative to u W, or to 0.5 where that is less
+    wrapping = do.device.wrapping if texture.repeat else 0.0
+    off = (
+        2.0 * (do.device.operation + wrapping) * UNIT
+    )  # of u W and of - 0.5, relative to u W, or to 0.5 where that is less
     texels, sure = [], np.ones(h.shape, np.bool_)
     for c, size in ((u, texture.texels.shape[1]), (v, texture.texels.shape[0])):
         x = c.value * size

@@ -19,7 +19,7 @@ DRIVER_FAULTS: dict[str, str] = {
 class Measured:
     """What was found."""
 
-    numbers: Mapping[str, int | str] = field(default_factory=dict)
+    numbers: Mapping[str, int | float | str] = field(default_factory=dict)
     """As they are declared."""
     why: Mapping[str, str] = field(default_factory=dict)
     """For each of them, and for what else was measured."""

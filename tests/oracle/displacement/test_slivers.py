@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ibr_ref.oracle.arithmetic.device import Policy
-from ibr_ref.oracle.declaration import device_of
+from ibr_ref.oracle.declaration import ARITHMETIC, device_of
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.programs.displacement.variants import CutAtBorders
@@ -15,9 +15,14 @@ from tests.oracle.displacement.drawn import REFEREE, case, draw, reference, wron
 NAME = "displacement-sliver"
 
 
+CORRECT = ",".join(f"{name}=0.5" for name in ARITHMETIC)
+
+
 def test_a_device_that_clips_at_the_border_passes_where_that_is_allowed() -> None:
+    """Also where it is known how precisely it computes, and that it interpolates over what it has not snapped."""
     arrays = draw(NAME, Policy(snapped_varyings=False), CutAtBorders)
-    assert not wrong(REFEREE.judge_stages(case(NAME), device_of("gl"), arrays))
+    for device in ("gl", "gl,varyings=unsnapped", f"gl,varyings=unsnapped,{CORRECT}"):
+        assert not wrong(REFEREE.judge_stages(case(NAME), device_of(device), arrays))
     assert wrong(REFEREE.judge_stages(case(NAME), device_of("gl,clip_border=none"), arrays))
     off = np.abs(arrays["raster.patch"] - reference(NAME)["raster.patch"]).max(axis=-1)
     assert np.nanmax(off) > 1e-4, "no sliver shows"

@@ -22,7 +22,7 @@ from ibr_ref.affine.rows import UNIT
 from ibr_ref.array_types import Bools, Floats
 from ibr_ref.oracle.accept.borders import Cut, Piece
 from ibr_ref.oracle.accept.bounded import Bounded, exact
-from ibr_ref.oracle.accept.coverage import Fragments, snapped
+from ibr_ref.oracle.accept.coverage import Fragments, of_varyings
 from ibr_ref.oracle.accept.whole import Whole
 from ibr_ref.oracle.device import Device
 from ibr_ref.oracle.referees.shadows.transform import gamma
@@ -33,7 +33,7 @@ class Triangles:
     """Corners in the window, and how far they may be moved."""
 
     x: Floats
-    """(T, 3) on the raster."""
+    """(T, 3) on the raster, or as they were before, where varyings are interpolated over those alone."""
     y: Floats
     reach: tuple[Floats, Floats]
     """(T, 3) each: a corner's longest move along x and y."""
@@ -52,15 +52,11 @@ class Triangles:
         cls, x: Bounded, y: Bounded, width: int, height: int, cuts: Sequence[Sequence[Cut | Whole]] = ()
     ) -> Triangles:
         """x, y (T, 3) in pixels, before they are snapped; cuts: none, or those of each triangle."""
-        (at_x, off_x), (at_y, off_y) = snapped(x), snapped(y)
-        unsnapped = x.device.unsnapped
-        if unsnapped:
-            off_x = np.maximum(off_x, np.abs(at_x - x.value) + x.error)
-            off_y = np.maximum(off_y, np.abs(at_y - y.value) + y.error)
+        (at_x, off_x), (at_y, off_y) = of_varyings(x), of_varyings(y)
         edge_x, edge_y = ((a[:, 1] - a[:, 0], a[:, 2] - a[:, 0]) for a in (at_x, at_y))
         area = edge_x[0] * edge_y[1] - edge_y[0] * edge_x[1]
         extent_x, extent_y = (np.maximum(np.abs(a).max(axis=1), n) for a, n in ((at_x, width), (at_y, height)))
-        return cls(at_x, at_y, (off_x, off_y), area, (extent_x, extent_y), unsnapped, cuts, x.device)
+        return cls(at_x, at_y, (off_x, off_y), area, (extent_x, extent_y), x.device.unsnapped, cuts, x.device)
 
     @cached_property
     def whole(self) -> Bools:
