@@ -64,8 +64,8 @@ def examine(
     """
     declaration = declared(profile) if isinstance(profile, str) else profile or ANY
     if problems or all(map(is_margin, handed)):
-        found = f"{', '.join(handed)} alone, which no port has right or wrong" if handed else "nothing"
-        reasons = tuple(problems) or (f"found {found}, allowed: color, depth or any stage",)
+        alone = f"{', '.join(handed)} alone, which no port has right or wrong" if handed else "nothing"
+        reasons = tuple(problems) or (f"found {alone}, allowed: color, depth or any stage",)
         return Examination(case=case, handed=handed, judgements=(), verdict=_unusable(case, reasons))
     if declaration.profile:
         trial, tried = _declared(case, handed, declaration.device(declaration.profile))
