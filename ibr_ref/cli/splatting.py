@@ -13,7 +13,6 @@ from ibr_ref.cli import depth_set_options, emptiness, options, own_case, picture
 from ibr_ref.cli.described import Described, beside
 from ibr_ref.cli.groups import grouped, told
 from ibr_ref.cli.what_goes_with_what import ABSENT, GIVEN, Beside, always
-from ibr_ref.methods import named
 from ibr_ref.progress import progress
 
 if TYPE_CHECKING:
@@ -211,7 +210,7 @@ def goes_with() -> dict[str, Beside]:
     )
     return {
         **always("out", "bits", "near", "far", "max_width", "shape", "method", "light", "report", "stages"),
-        **always("depth_set", "point_cloud"),
+        **always("depth_set", "point_cloud", "case"),
         **of_shape,
         **{name: Beside(one, {other: ABSENT for other in sources if other != name}) for name in sources},
         "cameras": Beside("it is about photographs", {"msr": GIVEN}, {"rgbd": GIVEN}),
@@ -219,7 +218,6 @@ def goes_with() -> dict[str, Beside]:
         "frame": Beside("it is about photographs", {"msr": GIVEN}),
         **{name: Beside("it is about pictures with depth", {"rgbd": GIVEN}) for name in told},
         "pose": Beside("it is one of the set's poses, in place of --view", {"rgbd": GIVEN, "view": ABSENT}),
-        "case": Beside(own_case.WHY, {"shape": named("splatting").judged[1]}),
         **{
             name: Beside("reference images are made of a mesh", {"mesh": GIVEN}) for name in ("count", "reference_size")
         },

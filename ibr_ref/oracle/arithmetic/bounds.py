@@ -215,8 +215,8 @@ class Bounds(Ways):
         x, device = self.of(x), self.device
         value = np.exp(x.value)
         units = device.exponential * (1.0 + np.abs(x.value) / np.log(2.0)) + 2.0 * device.operation * np.abs(x.value)
-        high = np.exp(np.minimum(x.high, 0.0))
-        return Number(self, value, high - value + 2.0 * units * UNIT * high, {}, x.lane)
+        low, high = np.exp(x.low), np.exp(np.minimum(x.high, 0.0))  # below 0 the lower end may be the farther one
+        return Number(self, value, np.maximum(high - value, value - low) + 2.0 * units * UNIT * high, {}, x.lane)
 
     def totals(self, terms: Any, of: Ints, count: int) -> Number:
         """(count,) sums of the terms (n,) that each row has, in any order; of (n,): whose they are."""

@@ -114,3 +114,21 @@ def test_rows_one_after_the_other_keep_their_runs() -> None:
     both = np.concatenate(parts)  # type: ignore[call-overload]
     assert both.lane.tolist() == [0, 1, 2, 2, 0, 1]
     assert both.value.tolist() == [0.0, 1.0, 2.0, 0.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("operation", "exact", "low", "high"),
+    [("exponential", np.exp, -np.inf, 0.0), ("root", np.sqrt, 0.0, np.inf)],
+)
+@pytest.mark.parametrize("size", [1e-6, 0.1, 3.0])
+def test_curves_keep_what_both_ends_of_a_range_give(
+    operation: str, exact: Callable[[Any], Any], low: float, high: float, size: float
+) -> None:
+    """Near where the range is cut off as near as elsewhere: e^x of x <= 0 had the nearer end's error there."""
+    random = np.random.default_rng(int(1.0 / size))
+    value = np.clip(random.normal(0.0, 1.0, COUNT), low, high) * 10.0 ** random.integers(-3, 1, COUNT)
+    x = Number(Bounds(IEEE32), value, size * random.uniform(0.0, 1.0, COUNT))
+    found = getattr(Bounds(IEEE32), operation)(x)
+    for at in np.linspace(0.0, 1.0, 21):
+        inside = np.clip(x.low + at * (x.high - x.low), low, high)
+        assert found.allows(exact(inside)).all(), at
