@@ -17,8 +17,6 @@ from ibr_ref.cli.groups import told
 if TYPE_CHECKING:
     from ibr_ref.shadows import Maps, Params, Scene
 
-
-if TYPE_CHECKING:
     Method = str
     Policy = str
     Interpolation = str

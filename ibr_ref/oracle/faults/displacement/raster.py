@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.displacement.case import Floats, Ints, Patch
 from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.oracle.programs.displacement.vertex import Quad
@@ -68,7 +69,7 @@ class _HalfPrecision(Port):
     """The corners' w are 16-bit floats."""
 
     def perspective(self, w: Floats) -> Floats:
-        return w.astype(np.float16).astype(np.float64)
+        return half(w)
 
 
 @RASTER.add("varyings in half precision", small=True)
@@ -76,7 +77,7 @@ class _HalfVaryings(Port):
     """C is a 16-bit vector in the fragment shader."""
 
     def varying(self, weights: Sequence[Floats], values: Floats, w: Floats) -> Floats:
-        return super().varying(weights, values, w).astype(np.float16).astype(np.float64)
+        return half(super().varying(weights, values, w))
 
 
 @RASTER.add("1/16 subpixels", small=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Ints, Patch, Vector
 from ibr_ref.oracle.programs.displacement.march import Rays
 from ibr_ref.oracle.programs.displacement.port import Port
@@ -78,7 +79,7 @@ class _HalfHit(Port):
     """(u, v, h) goes through a 16-bit buffer."""
 
     def hit_point(self, patch: Patch, rays: Rays, index: Ints) -> Vector:
-        return [x.astype(np.float16).astype(np.float64) for x in super().hit_point(patch, rays, index)]
+        return [half(x) for x in super().hit_point(patch, rays, index)]
 
 
 # --- Outcome ---------------------------------------------------------------------------------------------------------

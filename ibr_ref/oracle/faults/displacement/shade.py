@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.displacement.case import Bools, Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.port import Port
 
@@ -223,7 +224,7 @@ class _HalfColors(Port):
     """The colour map holds 16-bit floats."""
 
     def color_at(self, patch: Patch, u: Floats, v: Floats) -> Vector:
-        return [x.astype(np.float16).astype(np.float64) for x in super().color_at(patch, u, v)]
+        return [half(x) for x in super().color_at(patch, u, v)]
 
 
 @SHADE.add("colours from sRGB")

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.displacement.case import Floats, Patch, Vector
 from ibr_ref.oracle.programs.displacement.port import Port
 from ibr_ref.oracle.programs.displacement.vertex import V1, Quad
@@ -43,7 +44,7 @@ class _HalfScale(Port):
     """s is a 16-bit float."""
 
     def up(self, normal: Vector, scale: Floats) -> Vector:
-        return super().up(normal, scale.astype(np.float16).astype(np.float64))
+        return super().up(normal, half(scale))
 
 
 @VERTEX.add("view rotation transposed")

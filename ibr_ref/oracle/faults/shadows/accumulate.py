@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.faults.shadows.hidden import BELOW_A_BYTE
 from ibr_ref.oracle.programs.program import Floats, Vector
 from ibr_ref.oracle.programs.shadows.port import Port
 
 ACCUMULATE = Bugs("accumulate")
-
-
-def _half(x: Any) -> Any:
-    return np.asarray(x, np.float16).astype(np.float64)
 
 
 @ACCUMULATE.add("accumulate-one-less")
@@ -47,7 +42,7 @@ class _HalfFloats(Port):
     """The sum is held in half floats."""
 
     def stored(self, value: Floats) -> Floats:
-        return self.do.rising(_half, super().stored(value))
+        return self.do.rising(half, super().stored(value))
 
 
 @ACCUMULATE.add("accumulate-last-left-out")

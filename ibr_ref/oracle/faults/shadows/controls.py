@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.faults.shadows.hidden import BELOW_A_BYTE
 from ibr_ref.oracle.programs.program import Floats
 from ibr_ref.oracle.programs.shadows.port import Port
@@ -51,7 +52,7 @@ class _HalfFloats(Port):
     """Control points are held in half floats."""
 
     def controls(self) -> Floats:
-        return super().controls().astype(np.float16).astype(np.float64)
+        return half(super().controls())
 
 
 @CONTROLS.add("controls-v-upwards")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.program import Bools, Floats, Ints, Vector
 from ibr_ref.oracle.programs.shadows.port import Port
 from ibr_ref.oracle.programs.shadows.raster import FAR, Fragments, Raster
@@ -83,7 +84,7 @@ class _HalfDepth(Port):
     """Depth is read back in half floats."""
 
     def read_back(self, depth: Floats) -> Floats:
-        return depth.astype(np.float16).astype(np.float64)
+        return half(depth)
 
 
 @DEPTH.add("depth-caster-not-moved")

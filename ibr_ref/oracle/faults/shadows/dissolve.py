@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.faults.shadows.hidden import BELOW_A_BYTE
 from ibr_ref.oracle.programs.program import Bools, Floats, Vector
 from ibr_ref.oracle.programs.shadows.port import Port
@@ -83,7 +84,7 @@ class _HalfGrids(Port):
     """The grids of the rows are held in half floats."""
 
     def row_grid(self, first: Floats, second: Floats, share: Floats) -> Floats:
-        return super().row_grid(first, second, share).astype(np.float16).astype(np.float64)
+        return half(super().row_grid(first, second, share))
 
 
 @DISSOLVE.add("warp-mix-reversed")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.faults.shadows.hidden import GIVEN
 from ibr_ref.oracle.programs.program import Bools, Floats, Ints, Vector
 from ibr_ref.oracle.programs.shadows.port import Port
@@ -60,7 +61,7 @@ class _HalfPositions(Port):
     """Positions are held in half floats."""
 
     def positions(self) -> Floats:
-        return super().positions().astype(np.float16).astype(np.float64)
+        return half(super().positions())
 
 
 @MAPS.add("maps-rows-flipped", hidden=GIVEN)
@@ -138,7 +139,7 @@ class _HalfDepths(Port):
     """The maps' depths are held in half floats."""
 
     def nine_maps(self, positions: Floats) -> Floats:
-        return super().nine_maps(positions).astype(np.float16).astype(np.float64)
+        return half(super().nine_maps(positions))
 
 
 @MAPS.add("maps-linear-depth", hidden=GIVEN)

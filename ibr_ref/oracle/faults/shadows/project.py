@@ -8,6 +8,7 @@ import numpy as np
 
 from ibr_ref.array_types import Floats as Array
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.faults.shadows.systems import ALL, MAPPED
 from ibr_ref.oracle.programs.program import Bools, Floats, Vector
 from ibr_ref.oracle.programs.shadows.lights import Matrix
@@ -76,7 +77,7 @@ class _HalfDepth(Port):
     """R is held in half floats."""
 
     def clamped(self, r: Floats) -> Floats:
-        return super().clamped(r).astype(np.float16).astype(np.float64)
+        return half(super().clamped(r))
 
 
 @PROJECT.add("project-behind-light", small=True)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.faults.shadows.hidden import BELOW_A_BYTE
 from ibr_ref.oracle.programs.program import Bools, Floats, Vector
 from ibr_ref.oracle.programs.shadows.port import Port
@@ -128,7 +129,7 @@ class _HalfNormals(Port):
     """Normals are read from a texture of half floats."""
 
     def normals(self, world: Vector) -> Vector:
-        return [component.astype(np.float16).astype(np.float64) for component in super().normals(world)]
+        return [half(component) for component in super().normals(world)]
 
 
 @RESOLVE.add("resolve-light-from-target")

@@ -8,6 +8,7 @@ import numpy as np
 
 from ibr_ref.array_types import Floats as Array
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.program import Bools, Floats, Vector
 from ibr_ref.oracle.programs.shadows.port import Port
 from ibr_ref.oracle.programs.shadows.sampler import Sampler
@@ -188,16 +189,12 @@ class _OnCaster(Port):
         return np.zeros_like(casts)
 
 
-def _half(x: Floats) -> Floats:
-    return x.astype(np.float16).astype(np.float64)
-
-
 @SOFT.add("soft-distances-half-floats", small=True)
 class _HalfDistances(Port):
     """The map's distances are held in half floats."""
 
     def distance(self, depth: Floats) -> Floats:
-        return _half(super().distance(depth))
+        return half(super().distance(depth))
 
 
 @SOFT.add("soft-blocker-half-floats", small=True)
@@ -205,7 +202,7 @@ class _HalfBlocker(Port):
     """The mean of the blockers is held in half floats."""
 
     def mean_of_blockers(self, found: Sequence[Floats], counts: Sequence[Bools]) -> Floats:
-        return _half(super().mean_of_blockers(found, counts))
+        return half(super().mean_of_blockers(found, counts))
 
 
 @SOFT.add("soft-penumbra-half-floats", small=True)
@@ -213,7 +210,7 @@ class _HalfPenumbra(Port):
     """The penumbra is held in half floats."""
 
     def penumbra(self, b: Floats, r: Floats) -> Floats:
-        return _half(super().penumbra(b, r))
+        return half(super().penumbra(b, r))
 
 
 @SOFT.add("soft-points-half-floats", small=True)
@@ -221,4 +218,4 @@ class _HalfPoints(Port):
     """The light's points are held in half floats."""
 
     def looked_up(self, at: Vector, points: Array, scale: Floats) -> list[Vector]:
-        return super().looked_up(at, _half(points), scale)
+        return super().looked_up(at, half(points), scale)

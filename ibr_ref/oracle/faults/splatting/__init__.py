@@ -6,8 +6,11 @@ with the picture alone is resolve's, its depth raster's.
 
 from ibr_ref.oracle.faults.kinds import Mutant
 from ibr_ref.oracle.faults.splatting.atlas import ATLAS
+from ibr_ref.oracle.faults.splatting.averages import AVERAGES, SUMS
+from ibr_ref.oracle.faults.splatting.blends import BLENDS
 from ibr_ref.oracle.faults.splatting.decoding import DECODING
-from ibr_ref.oracle.faults.splatting.ellipses import AVERAGES, BLENDS, FOOTPRINTS
+from ibr_ref.oracle.faults.splatting.footprints import FOOTPRINTS
+from ibr_ref.oracle.faults.splatting.gaussians import GAUSSIANS
 from ibr_ref.oracle.faults.splatting.geometry import GEOMETRY
 from ibr_ref.oracle.faults.splatting.law import LAW
 from ibr_ref.oracle.faults.splatting.lighting import LIGHTING
@@ -19,7 +22,21 @@ from ibr_ref.oracle.programs.splatting.variants import VARIANTS
 
 MUTANTS: tuple[Mutant, ...] = tuple(
     mutant
-    for bugs in (NORMALS, ATLAS, GEOMETRY, LAW, FOOTPRINTS, DECODING, LIGHTING, RASTER, BLENDS, RESOLVE, AVERAGES)
+    for bugs in (
+        NORMALS,
+        ATLAS,
+        GEOMETRY,
+        LAW,
+        FOOTPRINTS,
+        GAUSSIANS,
+        DECODING,
+        LIGHTING,
+        RASTER,
+        BLENDS,
+        SUMS,
+        RESOLVE,
+        AVERAGES,
+    )
     for mutant in bugs.mutants
 )
 """In the order of the stages."""

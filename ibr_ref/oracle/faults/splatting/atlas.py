@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.splatting.atlas import Pages, Texels
 from ibr_ref.oracle.programs.splatting.case import Image, Ints
 from ibr_ref.oracle.programs.splatting.port import Port
@@ -43,7 +44,7 @@ class _DepthsOfHalfPrecision(Port):
     """Depths are stored as half floats."""
 
     def depth_texels(self, image: Image) -> Texels:
-        return super().depth_texels(image).astype(np.float16).astype(np.float64)
+        return half(super().depth_texels(image))
 
 
 @ATLAS.add("sixteen-bit-depths", small=True)
@@ -117,7 +118,7 @@ class _ColorsOfHalfPrecision(Port):
     """Colours are stored as half floats."""
 
     def color_texels(self, image: Image) -> Texels:
-        return super().color_texels(image).astype(np.float16).astype(np.float64)
+        return half(super().color_texels(image))
 
 
 @ATLAS.add("page-not-filled", hidden="texels are fetched from where they were put")

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.splatting.case import Floats, Image, Ints, Vector
 from ibr_ref.oracle.programs.splatting.port import Port
 
@@ -50,7 +51,7 @@ class _NormalsOfHalfPrecision(Port):
     """Normals are kept as half floats: mediump."""
 
     def normal(self, codes: Vector) -> Vector:
-        return [x.astype(np.float16).astype(np.float64) for x in super().normal(codes)]
+        return [half(x) for x in super().normal(codes)]
 
 
 @DECODING.add(
@@ -60,7 +61,7 @@ class _VaryingsOfHalfPrecision(Port):
     """Colours leave the vertex stage as half floats."""
 
     def lit(self, image: Image, world: Vector, codes: Vector, albedo: Vector) -> Vector:
-        return [x.astype(np.float16).astype(np.float64) for x in super().lit(image, world, codes, albedo)]
+        return [half(x) for x in super().lit(image, world, codes, albedo)]
 
 
 @DECODING.add("clamped-below-one", small=True)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.splatting.case import Bools, Floats, Ints, Vector
 from ibr_ref.oracle.programs.splatting.port import Port
 
@@ -292,10 +293,10 @@ class _WindowOfHalfPrecision(Port):
     """Normalized device coordinates are half floats: mediump."""
 
     def window_x(self, x: Floats) -> Floats:
-        return super().window_x(x.astype(np.float16).astype(np.float64))
+        return super().window_x(half(x))
 
     def window_y(self, y: Floats) -> Floats:
-        return super().window_y(y.astype(np.float16).astype(np.float64))
+        return super().window_y(half(y))
 
 
 @GEOMETRY.add("intrinsics-of-two-decimals", small=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.splatting.case import Floats, Image, Vector
 from ibr_ref.oracle.programs.splatting.port import Port
 
@@ -140,7 +141,7 @@ class _DistanceOfHalfPrecision(Port):
     """d is kept as a half float: mediump."""
 
     def distance(self, image: Image, world: Vector, view: Vector) -> Floats:
-        return super().distance(image, world, view).astype(np.float16).astype(np.float64)
+        return half(super().distance(image, world, view))
 
 
 @LAW.add("fixed-function-attenuation")

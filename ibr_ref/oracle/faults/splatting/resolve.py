@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ibr_ref.oracle.faults.bugs import Bugs
+from ibr_ref.oracle.faults.rounding import half
 from ibr_ref.oracle.programs.splatting.case import Bools, Floats, Ints
 from ibr_ref.oracle.programs.splatting.port import Port
 
@@ -146,7 +147,7 @@ class _PictureOfHalfPrecision(Port):
     """The frame buffer holds half floats."""
 
     def written(self, color: Floats) -> Floats:
-        return color.astype(np.float16).astype(np.float64)
+        return half(color)
 
 
 @RESOLVE.add("bytes-rounded-up", small=True)
