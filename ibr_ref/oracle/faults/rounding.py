@@ -6,9 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ibr_ref.array_types import Floats
 
-
-def half(x: Any) -> Floats:
-    """A float of 16 bits."""
-    return np.asarray(x, np.float16).astype(np.float64)
+def half(x: Any) -> Any:
+    """A float of 16 bits: of arrays, and of numbers with bounds, which have the same method."""
+    return x.astype(np.float16).astype(np.float64)

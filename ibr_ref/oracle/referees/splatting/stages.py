@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ibr_ref.array_types import Bools
 from ibr_ref.oracle.judgement import Handed, Judgement
-from ibr_ref.oracle.referees.splatting import pixels, points, texels
+from ibr_ref.oracle.referees.splatting import pixels, points, raster, texels
 from ibr_ref.oracle.referees.splatting.blends import SUMS
 from ibr_ref.oracle.referees.splatting.model import Model
 from ibr_ref.oracle.referees.splatting.pixels import fewest
@@ -15,7 +15,7 @@ ARRAYS = {
     "normals": ("atlas.normal",),
     "atlas": texels.ARRAYS,
     "vertex": points.ARRAYS,
-    "raster": (*pixels.ARRAYS, *SUMS),
+    "raster": (*raster.ARRAYS, *SUMS),
     "resolve": ("color", "depth"),
 }
 """For each stage the arrays that it is compared by."""
@@ -70,5 +70,5 @@ class Stages:
     def _judge(self, stage: str, port: points.Port) -> Judgement:
         if stage == "vertex":
             return points.judge_vertex(port, self.among)
-        judges = {"raster": pixels.judge_raster, "resolve": pixels.judge_resolve}
+        judges = {"raster": raster.judge_raster, "resolve": pixels.judge_resolve}
         return judges[stage](port)
