@@ -83,8 +83,8 @@ def test_50_million_points_stay_under_8_gib() -> None:
 
 @pytest.mark.long
 def test_50_million_points_with_all_stages_stay_under_8_gib() -> None:
-    """An eighth of them here, in an eighth of the memory. All 64: `python -m tests.splatting.many_points 64 stages`, which
-    has its peak at 6.9 GiB.
+    """An eighth of them here, in an eighth of the memory and what does not grow with them. All 64: `python -m
+    tests.splatting.many_points 64 stages`, which has its peak at 7.7 GiB.
     """
     found = json.loads(printed("-m", "tests.splatting.many_points", "8", "stages"))
-    assert found["peak"] - found["imported"] < 1 * GIB
+    assert found["peak"] - found["imported"] < 1 * GIB + GIB // 8

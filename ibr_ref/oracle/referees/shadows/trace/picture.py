@@ -77,7 +77,7 @@ def _shown(given: Inputs, fragments: NDArray[np.int64], first: int, at: int) -> 
 def _nothing(given: Inputs, arrays: Handed, index: Index) -> list[TraceRow]:
     """Of a pixel that shows the background."""
     rows, device = [], given.device
-    for name, count in (("project.coord", 3), ("project.shadow", 1)):
+    for name, count in (("project.coord", 3), ("project.blocker", 1), ("project.penumbra", 1), ("project.shadow", 1)):
         own = _own(given, arrays, name)
         for i in range(given.count if own is not None else 0):
             place = (i, *index) if given.count > 1 else None
