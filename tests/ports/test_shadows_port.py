@@ -163,6 +163,7 @@ def test_every_stage_is_legal(device: Any, scene: str, name: str) -> None:
 def test_the_nine_maps_are_legal(device: Any, content: str, samples: int) -> None:
     """A port that prepares the maps itself, at the places that it is given."""
     from ibr_ref.ports.described import described
+    from ibr_ref.ports.glsl.gl import create_device
     from ibr_ref.ports.glsl.shadows import Port
 
     params = shadows.Params(map_size=SIZE, rows=ROWS, columns=COLUMNS, content=content, map_samples=samples)
@@ -170,7 +171,9 @@ def test_the_nine_maps_are_legal(device: Any, content: str, samples: int) -> Non
     maps = shadows.prepare(given.scene, params, controls="identity")
     given = replace(given, params=params, inputs={"maps": maps})
     exported = described("shadows", given.scene, given.params, **given.inputs)
+    other = create_device()  # whose context is current from then on
     drawn = Port(device).maps(exported.scene, exported.params)
+    other.ctx.release()
     for images, right in ((drawn, True), (drawn[::-1], False)):
         submission = oracle.submission_from_arrays(given, stages={"maps.image": images})
         (stage,) = oracle.check(given, submission, profile="gl").verdict.stages

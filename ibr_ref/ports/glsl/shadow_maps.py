@@ -32,6 +32,7 @@ class Programs:
             flags = (*flags, "ZERO_TO_ONE") if self._device.zero_to_one else flags
             head = "#version 450 core\n" + "".join(f"#define {flag}\n" for flag in flags)
             sources = [head + gl.source(f"shadows_{name}") for name in (f"{vertex}.vert", f"{fragment}.frag")]
+            self._device.use()
             self._linked[key] = self._device.ctx.program(vertex_shader=sources[0], fragment_shader=sources[1])
         return self._linked[key]
 
@@ -41,6 +42,7 @@ class Programs:
         if key not in self._linked:
             head = "#version 450 core\n" + "".join(f"#define {flag}\n" for flag in ("CAPTURE", *flags))
             source = head + gl.source(f"shadows_{vertex}.vert")
+            self._device.use()
             self._linked[key] = self._device.ctx.program(vertex_shader=source, varyings=[varying])
         return self._linked[key]
 

@@ -209,6 +209,7 @@ class Port:
 
     def maps(self, scene: Any, params: Any) -> np.ndarray:
         """Stage 1: (3, 3, S, S) maps of the caster at the nine positions, seen from the light's centre."""
+        self.device.use()
         caster = CasterMaps(self.device, self._programs, scene, params)
         images = []
         for offset in scene.maps.positions.reshape(9, 2):
