@@ -83,6 +83,11 @@ def snapped(x: Bounded) -> tuple[Floats, Floats]:
     return reference / RASTER, np.where(x.error > 0.0, off, 0.0) / RASTER
 
 
+def twice_area(x: Floats, y: Floats) -> Floats:
+    """(T,) of triangles with corners (T, 3), negative of those that are turned."""
+    return np.asarray((x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0]))
+
+
 def of_varyings(x: Bounded) -> tuple[Floats, Floats]:
     """The same of what varyings are interpolated over: the snapped coordinates, those before, or either of them."""
     if not x.device.snapped:
@@ -137,7 +142,7 @@ def _corners(x: Bounded, y: Bounded) -> Corners:
     (at_x, off_x), (at_y, off_y) = snapped(x), snapped(y)
     off = np.maximum(off_x, off_y)
     (over_x, over_off_x), (over_y, over_off_y) = of_varyings(x), of_varyings(y)
-    area = (at_x[:, 1] - at_x[:, 0]) * (at_y[:, 2] - at_y[:, 0]) - (at_y[:, 1] - at_y[:, 0]) * (at_x[:, 2] - at_x[:, 0])
+    area = twice_area(at_x, at_y)
     turned = area < 0.0
     order = np.where(np.asarray(turned)[:, None], [0, 2, 1], [0, 1, 2])
     places = (at_x, at_y, off, over_x, over_y, np.maximum(over_off_x, over_off_y))
@@ -224,7 +229,7 @@ def _weights(corners: Corners, triangle: Ints, edges: Floats) -> tuple[Floats, F
     e <= G sum (|w_i| + e) off_i with the steepest gradient G of the three weights, solved for e.
     """
     x, y, off = corners.varying_x, corners.varying_y, corners.varying_off
-    area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0])
+    area = twice_area(x, y)
     reach = [abs(x[:, b] - x[:, a]) + abs(y[:, b] - y[:, a]) for a, b in map(corners.edge, range(3))]
     with np.errstate(divide="ignore", invalid="ignore"):
         weights = edges / area[triangle, None]

@@ -93,7 +93,7 @@ def fragments_of(program: Any, polygons: Faces, unclipped: Faces, polygon: int, 
     x, y = (_bounded(c, 0.5 - program.centre(), device).widened(off) for c in (x, y))
     found = coverage.fragments(x, y, width, height, owns_border=program.owns_border)
     at_x, at_y = (coverage.snapped(c)[0] for c in (x, y))
-    area = (at_x[:, 1] - at_x[:, 0]) * (at_y[:, 2] - at_y[:, 0]) - (at_y[:, 1] - at_y[:, 0]) * (at_x[:, 2] - at_x[:, 0])
+    area = coverage.twice_area(at_x, at_y)
     # Corners that are no numbers cover nothing, whichever way round.
     drawn = np.array([bool(program.draws_orientation(int(np.nan_to_num(np.sign(a))))) for a in area], np.bool_)
     shift = program.varying_centre() - program.centre()
@@ -197,7 +197,7 @@ def _weights(
     picture's corner between, as in borders.py.
     """
     px, py, t = found.columns + 0.5, found.rows + 0.5, found.triangle
-    area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (y[:, 1] - y[:, 0]) * (x[:, 2] - x[:, 0])
+    area = coverage.twice_area(x, y)
     rounding, gradient = np.empty_like(found.weights), np.empty((len(x), 3, 2))
     units = (EDGE_ROUNDINGS * device.operation + device.quotient) * UNIT
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -104,9 +104,7 @@ def contest(program: Any, points: Drawn) -> Contest:
     points = recut(program, points)
     camera = program.scene.camera
     pixels, depth = camera.width * camera.height, program.stored_depth(points.depth)
-    splats = _splats(program, points)
-    spans = [_ends(axis) for axis in program.spans(splats)]
-    counts = np.prod([np.maximum(stop - first, 0) for first, stop, _, _ in spans], axis=0)
+    splats, spans, counts = _spanned(program, points)
     least, most = np.zeros((2, pixels), np.int64)
     if int(counts.sum()) > MOST_PAIRS:
         none = np.zeros(0, np.int64)
@@ -135,9 +133,7 @@ def contest(program: Any, points: Drawn) -> Contest:
 def covering(program: Any, points: Drawn, pixels: Ints) -> tuple[Any, Pairs]:
     """The splats that are drawn, and all pairs of one of them and a pixel that it may cover, of those asked for, growing."""
     points = recut(program, points)
-    splats = _splats(program, points)
-    spans = [_ends(axis) for axis in program.spans(splats)]
-    counts = np.prod([np.maximum(stop - first, 0) for first, stop, _, _ in spans], axis=0)
+    splats, spans, counts = _spanned(program, points)
     asked = np.zeros(program.scene.camera.width * program.scene.camera.height, np.bool_)
     asked[pixels] = True
     found = [
@@ -148,13 +144,14 @@ def covering(program: Any, points: Drawn, pixels: Ints) -> tuple[Any, Pairs]:
     return splats, Pairs(*(np.concatenate(parts) for parts in fields))
 
 
-def _splats(program: Any, points: Drawn) -> Any:
-    """Those that may be drawn."""
+def _spanned(program: Any, points: Drawn) -> tuple[Any, list[Any], Ints]:
+    """The splats that may be drawn, their columns and rows (`_ends`), and how many pixels that are."""
     live = np.flatnonzero(points.possible & (points.width.high > 0.0))
     splats = program.splats(live, [c[live] for c in points.window], points.width[live], points.depth[live])
-    if points.gaussian is None:
-        return splats
-    return splats._replace(gaussian=points.gaussian[splats.vertex])
+    if points.gaussian is not None:
+        splats = splats._replace(gaussian=points.gaussian[splats.vertex])
+    spans = [_ends(axis) for axis in program.spans(splats)]
+    return splats, spans, np.prod([np.maximum(stop - first, 0) for first, stop, _, _ in spans], axis=0)
 
 
 def _ends(span: tuple[Number, Number]) -> tuple[Ints, Ints, Ints, Ints]:

@@ -51,9 +51,8 @@ def fetch(do: Bounds, texture: Texture, x: Number, y: Number) -> Number:
 def below_highest(do: Bounds, texture: Texture, u: Number, v: Number, h: Number) -> Ints:
     """The samples (u, v, h) that are not certainly above every texel that a fetch there may see."""
     wrapping = do.device.wrapping if texture.repeat else 0.0
-    off = (
-        2.0 * (do.device.operation + wrapping) * UNIT
-    )  # of u W and of - 0.5, relative to u W, or to 0.5 where that is less
+    # Of u W and of - 0.5, relative to u W, or to 0.5 where that is less.
+    off = 2.0 * (do.device.operation + wrapping) * UNIT
     texels, sure = [], np.ones(h.shape, np.bool_)
     for c, size in ((u, texture.texels.shape[1]), (v, texture.texels.shape[0])):
         x = c.value * size

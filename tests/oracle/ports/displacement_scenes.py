@@ -11,16 +11,12 @@ from numpy.typing import NDArray
 
 from ibr_ref import models
 from ibr_ref.displacement import Params, Scene
-from ibr_ref.oracle.cases.displacement import CASES
+from ibr_ref.oracle.cases.displacement import CASES, made
+from ibr_ref.oracle.cases.displacement.made import noise
 from ibr_ref.oracle.faults.displacement import MUTANTS
 from ibr_ref.scene import BasePolygon, Camera, Light
 
 WIDTH, HEIGHT = 96, 72
-
-
-def noise(*shape: int, seed: int = 0) -> NDArray[np.float64]:
-    """Random texels in [0, 1)."""
-    return np.random.RandomState(seed).random_sample(shape)
 
 
 def hills(rows: int, columns: int) -> NDArray[np.float64]:
@@ -34,22 +30,12 @@ def hills(rows: int, columns: int) -> NDArray[np.float64]:
 
 def looking(**view: Any) -> Camera:
     """A perspective camera."""
-    return Camera.look_at(**{"width": WIDTH, "height": HEIGHT, "near": 0.05, "far": 20.0, "vertical_fov": 40.0, **view})
+    return made.looking(**{"width": WIDTH, "height": HEIGHT, **view})
 
 
 def sheared(**more: Any) -> BasePolygon:
-    """A tilted parallelogram, longer than wide, away from the origin, with a map that is no square, and a facade."""
-    values = {
-        "corner": (0.3, -0.8, 0.1),
-        "edge_u": (1.5, 0.2, 0.1),
-        "edge_v": (0.5, 0.8, -0.1),
-        "height_map": hills(40, 56),
-        "color_map": noise(9, 13, 3, seed=1),
-        "height_scale": 0.3,
-        "facade_map": noise(8, 6, 3, seed=2),
-        "facade_tile": (0.4, 0.25),
-    }
-    return BasePolygon(**{**values, **more})
+    """That of the cases, with these hills."""
+    return made.sheared(**{"height_map": hills(40, 56), **more})
 
 
 @cache
@@ -111,7 +97,7 @@ def mapped() -> tuple[Scene, Params]:
 def tiles() -> tuple[Scene, Params]:
     """Repeated maps, the base alone, and the depth of the polygon."""
     camera = looking(eye=(0.6, -1.7, 1.3), target=(1.3, -0.3, 0.1), vertical_fov=34.0)
-    polygon = sheared(height_map=noise(11, 14), normal_map=0.4 + 0.5 * noise(7, 5, 3, seed=3), domain="repeat")
+    polygon = sheared(height_map=noise(11, 14, seed=0), normal_map=0.4 + 0.5 * noise(7, 5, 3, seed=3), domain="repeat")
     scene = Scene(polygons=[polygon], camera=camera, light=Light(direction=(-0.8, 0.6, 0.5), specular=0.5))
     return scene, Params(linear_steps=15, faces="base", depth="polygon", shadow_steps=5)
 
@@ -172,7 +158,7 @@ def from_above() -> tuple[Scene, Params]:
     )
     values = {"edge_u": (1.0, 0.0, 0.0), "edge_v": (0.0, 1.0, 0.0), "height_scale": 0.25}
     polygons = [
-        BasePolygon(corner=(x, -0.484375, 0.0), height_map=hills(16, 16), color_map=noise(4, 4, 3), **values)
+        BasePolygon(corner=(x, -0.484375, 0.0), height_map=hills(16, 16), color_map=noise(4, 4, 3, seed=0), **values)
         for x in (-0.984375, 0.015625)
     ]
     return Scene(polygons=polygons, camera=camera, light=Light(direction=(0.3, 0.5, 1.0))), Params()
